@@ -1,0 +1,36 @@
+# Everything a fresh Debian 12 machine needs is one word away: make demo, make test.
+PACKAGES = build-essential cmake ninja-build ccache pkg-config \
+  libtorch-dev libopencv-dev libeigen3-dev libopenblas0-pthread libcli11-dev libspdlog-dev \
+  nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev
+RECOLLECT = build/recollect
+
+.PHONY: setup build test sanitize demo format
+
+# Installs what is missing and nothing else; quiet and quick when all is there.
+setup:
+	@missing=$$(for p in $(PACKAGES); do \
+	  dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || echo $$p; done); \
+	[ -z "$$missing" ] && exit 0; \
+	if [ "$$(id -u)" = 0 ]; then as=; elif command -v sudo >/dev/null; then as=sudo; else \
+	  echo "make setup: missing Debian packages:" $$missing >&2; \
+	  echo "  not root and no sudo here; as root: apt-get install" $$missing >&2; exit 1; fi; \
+	echo "Installing" $$missing; \
+	$$as apt-get update -qq && \
+	DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends $$missing >/dev/null || { \
+	  echo "make setup: could not install:" $$missing >&2; exit 1; }
+
+build: setup
+	@cmake --preset default >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; rm -f build.log
+	@cmake --build build
+
+test: build
+	ctest --preset default
+
+# The unit tests again under the address and undefined-behaviour sanitizers.
+sanitize: setup
+	cmake --preset sanitize >/dev/null
+	cmake --build build-sanitize
+	ctest --preset sanitize
+
+format:
+	git ls-files '*.h' '*.cc' | xargs clang-format -i

@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/core/random.h"
+
+namespace recollect {
+namespace {
+
+TEST(Error, SaysWhereWhatAndWhatToDo) {
+  const Error error(AtLine("poses.txt", 3), "11 numbers where 12 belong", "write 3x4 rows");
+  EXPECT_STREQ(error.what(), "poses.txt:3: 11 numbers where 12 belong; write 3x4 rows");
+  EXPECT_STREQ(Error("a", "b").what(), "a: b");
+}
+
+TEST(ThreadPool, CoversEveryIndexOnceWithAnyThreadsAndGrain) {
+  for (const int threads : {1, 2, 5}) {
+    ThreadPool pool(threads);
+    for (const std::int64_t count : {0, 1, 7, 1000}) {
+      for (const std::int64_t grain : {1, 3, 5000}) {
+        std::vector<int> visits(static_cast<std::size_t>(count), 0);
+        pool.For(count, grain, [&](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+        });
+        EXPECT_EQ(std::accumulate(visits.begin(), visits.end(), 0), count);
+        for (const int visit : visits) EXPECT_EQ(visit, 1);
+      }
+    }
+  }
+}
+
+TEST(ThreadPool, RethrowsAndStaysUsable) {
+  ThreadPool pool(3);
+  EXPECT_THROW(pool.For(100, 1,
+                        [](std::int64_t i, std::int64_t) {
+                          if (i == 50) throw Error("here", "on purpose");
+                        }),
+               Error);
+  std::atomic<int> sum{0};
+  pool.For(10, 1, [&](std::int64_t i, std::int64_t) { sum += static_cast<int>(i); });
+  EXPECT_EQ(sum, 45);
+}
+
+TEST(Random, IsReproducibleAndHasTheRightMoments) {
+  Random a(7), b(7), c(8);
+  EXPECT_EQ(a.Bits(), b.Bits());
+  EXPECT_NE(a.Bits(), c.Bits());
+  double sum = 0, squares = 0, uniform = 0;
+  const int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    const double x = a.Normal();
+    sum += x;
+    squares += x * x;
+    uniform += a.Uniform();
+  }
+  EXPECT_NEAR(sum / n, 0.0, 0.02);
+  EXPECT_NEAR(squares / n, 1.0, 0.03);
+  EXPECT_NEAR(uniform / n, 0.5, 0.01);
+}
+
+}  // namespace
+}  // namespace recollect
