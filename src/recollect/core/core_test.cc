@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <numeric>
 #include <vector>
 
 #include "recollect/core/error.h"
+#include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/random.h"
 
@@ -42,6 +44,28 @@ TEST(ThreadPool, RethrowsAndStaysUsable) {
   std::atomic<int> sum{0};
   pool.For(10, 1, [&](std::int64_t i, std::int64_t) { sum += static_cast<int>(i); });
   EXPECT_EQ(sum, 45);
+}
+
+TEST(AtomicWrite, ReplacesWholeFilesOrLeavesTheOldOne) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "recollect_atomic_write";
+  fs::remove_all(folder);
+  const fs::path file = folder / "deep" / "figures.json";
+  AtomicWrite(file, "one");
+  AtomicWrite(file, "two");
+  EXPECT_EQ(ReadFile(file), "two");
+  EXPECT_THROW(AtomicWrite(file,
+                           [](const fs::path& temporary) {
+                             AtomicWrite(temporary, "half");
+                             throw Error("disk", "full");
+                           }),
+               Error);
+  EXPECT_EQ(ReadFile(file), "two");
+  EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()), 1);
+  EXPECT_THROW(AtomicWrite(file.parent_path(), "x"), Error);
+  EXPECT_THROW(AtomicWrite("/proc/recollect/x", "x"), Error);
+  EXPECT_THROW(ReadFile(folder), Error);
+  EXPECT_THROW(ReadFile(folder / "missing"), Error);
 }
 
 TEST(Random, IsReproducibleAndHasTheRightMoments) {

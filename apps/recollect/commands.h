@@ -1,0 +1,6 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// One function a sub-command, each in the file of its name.
+namespace recollect::app {}  // namespace recollect::app
