@@ -1,0 +1,236 @@
+#include "recollect/dataset/kitti_reader.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <map>
+#include <optional>
+
+#include "recollect/core/error.h"
+#include "recollect/dataset/image.h"
+#include "recollect/dataset/text_table.h"
+
+namespace recollect {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Projection = Eigen::Matrix<double, 3, 4>;
+using NumberedFiles = std::map<std::int64_t, fs::path>;
+
+constexpr double kSecondsPerFrame = 0.1;
+
+// The images of a folder by the number that is their name.
+NumberedFiles ListImages(const fs::path& folder) {
+  NumberedFiles images;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string stem = entry.path().stem().string();
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".png" && extension != ".jpg") continue;
+    std::int64_t number = 0;
+    const auto [end, code] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+    Require(code == std::errc() && end == stem.data() + stem.size() && number >= 0,
+            entry.path().string(), "the name of an image must be its number");
+    Require(images.emplace(number, entry.path()).second, entry.path().string(),
+            fmt::format("a second image with number {}", number));
+  }
+  return images;
+}
+
+Projection ReadProjection(const TextTable& table, const TextTable::Row& row, std::size_t first) {
+  Projection P;
+  for (int i = 0; i < 12; ++i) {
+    P(i / 4, i % 4) = table.Number(row, first + static_cast<std::size_t>(i));
+  }
+  if (P(0, 0) <= 0 || P(1, 1) <= 0) table.Fail(row, "focal length is not positive");
+  Eigen::Matrix3d K = P.leftCols<3>();
+  K(0, 0) = K(1, 1) = K(0, 2) = K(1, 2) = 0;
+  K(2, 2) -= 1;
+  if (!K.isZero(1e-9)) table.Fail(row, "projection is not that of a rectified camera");
+  return P;
+}
+
+// P0..P3 by number, as far as the file has them.
+std::map<int, Projection> ReadCalibration(const fs::path& path) {
+  const TextTable table(path);
+  std::map<int, Projection> projections;
+  int bare_rows = 0;
+  for (const TextTable::Row& row : table.rows()) {
+    const std::string_view key = row.fields.front();
+    const bool named = key.ends_with(':');
+    if (named && (key.size() != 3 || key[0] != 'P')) continue;  // Tr: and the like
+    table.RequireFields(row, named ? 13 : 12, named ? "a name and a 3x4 matrix" : "a 3x4 matrix");
+    const int number = named ? key[1] - '0' : bare_rows++;
+    if (!projections.emplace(number, ReadProjection(table, row, named ? 1 : 0)).second) {
+      table.Fail(row, fmt::format("P{} is given twice", number));
+    }
+  }
+  return projections;
+}
+
+std::vector<double> ReadTimes(const fs::path& path) {
+  const TextTable table(path);
+  std::vector<double> times;
+  for (const TextTable::Row& row : table.rows()) {
+    table.RequireFields(row, 1, "seconds");
+    times.push_back(table.Number(row, 0));
+    if (times.size() > 1 && times.back() <= times[times.size() - 2]) {
+      table.Fail(row, "time is not after the one before");
+    }
+  }
+  return times;
+}
+
+std::vector<GpsFix> ReadGps(const fs::path& path) {
+  const TextTable table(path, ',');
+  std::vector<GpsFix> fixes;
+  for (const TextTable::Row& row : table.rows()) {
+    if (row.fields.front() == "time") continue;
+    table.RequireFields(row, 5, "time,x,y,z,quality");
+    GpsFix fix;
+    fix.time = table.Number(row, 0);
+    for (int i = 0; i < 3; ++i) fix.p_world[i] = table.Number(row, static_cast<std::size_t>(i) + 1);
+    const double quality = table.Number(row, 4);
+    if (quality < 0 || quality > 9 || quality != std::floor(quality)) {
+      table.Fail(row, fmt::format("quality {} is none of 0..9", quality));
+    }
+    fix.quality = static_cast<int>(quality);
+    if (!fixes.empty() && fix.time < fixes.back().time) {
+      table.Fail(row, "time is before the one before");
+    }
+    fixes.push_back(fix);
+  }
+  return fixes;
+}
+
+// The camera pair of the images `left` (0 or 2), and body_from_camera.
+void SetCamera(const fs::path& calibration, int left, bool has_right, Lap& lap) {
+  const std::map<int, Projection> projections = ReadCalibration(calibration);
+  const auto P_of = [&](int number) {
+    Require(projections.contains(number), calibration.string(),
+            fmt::format("P{} is missing", number),
+            fmt::format("image_{} needs its projection", number));
+    return projections.at(number);
+  };
+  const Projection P = P_of(left);
+  lap.camera.left.fx = P(0, 0);
+  lap.camera.left.fy = P(1, 1);
+  lap.camera.left.cx = P(0, 2);
+  lap.camera.left.cy = P(1, 2);
+  // P = K [I | t] takes a point of camera 0, the body, to this camera's pixels.
+  const Eigen::Vector3d t = P.leftCols<3>().inverse() * P.col(3);
+  lap.body_from_camera = SE3(Eigen::Matrix3d::Identity(), -t);
+  if (has_right || projections.contains(left + 1)) {
+    lap.camera.baseline = (P(0, 3) - P_of(left + 1)(0, 3)) / P(0, 0);
+    Require(lap.camera.baseline > 0 || !has_right, calibration.string(),
+            fmt::format("camera {} is not to the right of camera {}", left + 1, left));
+    lap.camera.baseline = std::max(0.0, lap.camera.baseline);
+  }
+}
+
+void RequireSize(const fs::path& path, const PinholeCamera& camera) {
+  const ImageInfo info = ReadImageInfo(path);
+  Require(info.width == camera.width && info.height == camera.height, path.string(),
+          fmt::format("{}x{} pixels where the lap's first image has {}x{}", info.width, info.height,
+                      camera.width, camera.height));
+}
+
+// Says which image is missing, where the numbers tell.
+std::string Missing(const NumberedFiles& images, std::size_t count) {
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i) {
+    if (!images.contains(i)) return fmt::format("; the first missing is number {}", i);
+  }
+  return "";
+}
+
+}  // namespace
+
+bool LooksLikeKitti(const fs::path& folder) {
+  for (const char* mark : {"poses.txt", "calib.txt", "image_0", "image_2"}) {
+    if (fs::exists(folder / mark)) return true;
+  }
+  return false;
+}
+
+std::vector<SE3> ReadKittiPoses(const fs::path& path) {
+  const TextTable table(path);
+  std::vector<SE3> poses;
+  poses.reserve(table.rows().size());
+  for (const TextTable::Row& row : table.rows()) {
+    table.RequireFields(row, 12, "a 3x4 matrix");
+    Projection T;
+    for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = table.Number(row, static_cast<std::size_t>(i));
+    const Eigen::Matrix3d R = T.leftCols<3>();
+    if (!IsRotation(R)) table.Fail(row, "the left 3x3 block is not a rotation");
+    poses.emplace_back(NearestRotation(R), T.col(3));
+  }
+  Require(!poses.empty(), path.string(), "holds no pose");
+  return poses;
+}
+
+Lap ReadKittiLap(const fs::path& folder) {
+  Lap lap;
+  lap.folder = folder;
+  lap.name = fs::canonical(folder).filename().string();
+  const int left = fs::exists(folder / "image_2") ? 2 : 0;
+  const fs::path left_folder = folder / fmt::format("image_{}", left);
+  const fs::path right_folder = folder / fmt::format("image_{}", left + 1);
+  Require(fs::is_directory(left_folder), folder.string(), "has no images",
+          "the left ones belong in image_2 (colour) or image_0 (gray)");
+  const NumberedFiles left_images = ListImages(left_folder);
+  Require(!left_images.empty(), left_folder.string(), "holds no image",
+          "images are named NUMBER.png or NUMBER.jpg");
+  const bool has_right = fs::exists(right_folder);
+  SetCamera(folder / "calib.txt", left, has_right, lap);
+  const ImageInfo first = ReadImageInfo(left_images.begin()->second);
+  lap.camera.left.width = first.width;
+  lap.camera.left.height = first.height;
+
+  const std::vector<SE3> poses = ReadKittiPoses(folder / "poses.txt");
+  Require(left_images.size() == poses.size(), left_folder.string(),
+          fmt::format("{} images for the {} poses of poses.txt{}", left_images.size(), poses.size(),
+                      Missing(left_images, poses.size())));
+  std::vector<double> times;
+  if (fs::exists(folder / "times.txt")) {
+    times = ReadTimes(folder / "times.txt");
+    Require(times.size() == poses.size(), (folder / "times.txt").string(),
+            fmt::format("{} times for the {} poses of poses.txt", times.size(), poses.size()));
+  }
+  std::map<std::int64_t, Frame*> by_number;
+  lap.frames.resize(poses.size());
+  for (std::size_t i = 0; const auto& [number, path] : left_images) {
+    RequireSize(path, lap.camera.left);
+    Frame& frame = lap.frames[i];
+    frame.time = times.empty() ? kSecondsPerFrame * static_cast<double>(i) : times[i];
+    frame.world_from_body = poses[i++];
+    frame.left = path;
+    by_number[number] = &frame;
+  }
+  const auto frame_of = [&](std::int64_t number, const fs::path& path) -> Frame& {
+    Require(by_number.contains(number), path.string(),
+            fmt::format("no image of that number in image_{}", left));
+    return *by_number[number];
+  };
+  if (has_right) {
+    for (const auto& [number, path] : ListImages(right_folder)) {
+      RequireSize(path, lap.camera.left);
+      frame_of(number, path).right = path;
+    }
+  }
+  if (fs::exists(folder / "depth")) {
+    for (const auto& [number, path] : ListImages(folder / "depth")) {
+      const ImageInfo info = ReadImageInfo(path);
+      Require(info.bits == 16 && info.channels == 1, path.string(),
+              fmt::format("depth has {} bits and {} channels where 16 and 1 belong", info.bits,
+                          info.channels));
+      DepthCamera(lap.camera.left, info.width, info.height, path.string());
+      frame_of(number, path).depth = path;
+    }
+  }
+  if (fs::exists(folder / "gps.csv")) lap.gps = ReadGps(folder / "gps.csv");
+  return lap;
+}
+
+}  // namespace recollect

@@ -1,0 +1,75 @@
+#include "recollect/dataset/reader.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "recollect/core/error.h"
+#include "recollect/dataset/kitti_reader.h"
+
+namespace recollect {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<std::string_view, Format>, 4> kFormats = {{{"guess", Format::kGuess},
+                                                                          {"kitti", Format::kKitti},
+                                                                          {"tum", Format::kTum},
+                                                                          {"ufes", Format::kUfes}}};
+
+// The format whose marks the folder bears, kGuess where it bears none.
+Format FormatOf(const fs::path& folder) {
+  if (LooksLikeKitti(folder)) return Format::kKitti;
+  return Format::kGuess;
+}
+
+std::vector<Lap> ReadFolder(const fs::path& folder, Format format) {
+  switch (format) {
+    case Format::kKitti:
+      return {ReadKittiLap(folder)};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+Format ParseFormat(std::string_view name) {
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                  [&](const auto& entry) { return entry.first == name; });
+  Require(found != kFormats.end(), "format", fmt::format("'{}' is none", name),
+          "use guess, kitti, tum or ufes");
+  return found->second;
+}
+
+std::vector<Lap> ReadLaps(const fs::path& folder, Format format) {
+  Require(fs::exists(folder), folder.string(), "no such folder");
+  Require(fs::is_directory(folder), folder.string(), "is a file where a folder belongs");
+  const auto wanted = [&](Format found) {
+    return found != Format::kGuess && (format == Format::kGuess || format == found);
+  };
+  if (const Format found = FormatOf(folder); wanted(found)) return ReadFolder(folder, found);
+
+  std::vector<fs::path> inner;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory() && wanted(FormatOf(entry.path()))) inner.push_back(entry.path());
+  }
+  std::sort(inner.begin(), inner.end());
+  std::vector<Lap> laps;
+  for (const fs::path& path : inner) {
+    for (Lap& lap : ReadFolder(path, FormatOf(path))) laps.push_back(std::move(lap));
+  }
+  Require(!laps.empty(), folder.string(), "holds no lap that can be recognised",
+          "a lap has calib.txt and poses.txt (KITTI), rgb.txt and groundtruth.txt (TUM), or "
+          "camera3.txt and camerapos-*.txt (UFES-LAPS)");
+  return laps;
+}
+
+Lap ReadLap(const fs::path& folder, Format format) {
+  std::vector<Lap> laps = ReadLaps(folder, format);
+  Require(laps.size() == 1, folder.string(),
+          fmt::format("holds {} laps where one is wanted", laps.size()), "name one of them");
+  return std::move(laps.front());
+}
+
+}  // namespace recollect

@@ -1,0 +1,75 @@
+#include "recollect/dataset/text_table.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "recollect/core/error.h"
+#include "recollect/core/files.h"
+
+namespace recollect {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+}
+
+std::vector<std::string_view> Fields(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  if (separator == ' ') {
+    for (std::size_t end = 0, begin = line.find_first_not_of(kBlanks);
+         begin != std::string_view::npos; begin = line.find_first_not_of(kBlanks, end)) {
+      end = std::min(line.find_first_of(kBlanks, begin), line.size());
+      fields.push_back(line.substr(begin, end - begin));
+    }
+    return fields;
+  }
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    fields.push_back(Trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+}  // namespace
+
+TextTable::TextTable(const std::filesystem::path& path, char separator)
+    : path_(path), text_(ReadFile(path)) {
+  const std::string_view text = text_;
+  std::size_t line_number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = Trimmed(text.substr(begin, end - begin));
+    ++line_number;
+    if (!line.empty() && line.front() != '#') {
+      rows_.push_back({line_number, Fields(line, separator)});
+    }
+    begin = end + 1;
+  }
+}
+
+double TextTable::Number(const Row& row, std::size_t field) const {
+  const std::string_view text = row.fields.at(field);
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, value);
+  if (code != std::errc() || stop != end) Fail(row, fmt::format("'{}' is not a number", text));
+  if (!std::isfinite(value)) Fail(row, fmt::format("'{}' is not a finite number", text));
+  return value;
+}
+
+void TextTable::RequireFields(const Row& row, std::size_t count, std::string_view what) const {
+  if (row.fields.size() != count) {
+    Fail(row, fmt::format("{} fields where {} belong ({})", row.fields.size(), count, what));
+  }
+}
+
+void TextTable::Fail(const Row& row, const std::string& what, const std::string& remedy) const {
+  throw Error(AtLine(path_.string(), row.line), what, remedy);
+}
+
+}  // namespace recollect
