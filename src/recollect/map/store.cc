@@ -1,0 +1,189 @@
+#include "recollect/map/store.h"
+
+#include <lmdb.h>
+
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "recollect/core/error.h"
+#include "recollect/core/files.h"
+
+namespace recollect {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 4> kTableNames = {"meta", "keyframes", "images", "patterns"};
+// Address space, not memory or disk: room for about two million key frames.
+constexpr std::size_t kAddressSpace = std::size_t{256} << 30;
+
+void Check(int code, const fs::path& file, const char* doing) {
+  if (code == MDB_SUCCESS) return;
+  const bool foreign = code == MDB_INVALID || code == MDB_VERSION_MISMATCH ||
+                       code == MDB_CORRUPTED || code == MDB_PAGE_NOTFOUND || code == MDB_NOTFOUND;
+  throw Error(file.string(), fmt::format("{} failed ({})", doing, mdb_strerror(code)),
+              foreign ? "this is not a whole Recollect map" : "");
+}
+
+MDB_val ToValue(Bytes bytes) { return {bytes.size(), const_cast<std::byte*>(bytes.data())}; }
+
+std::optional<Bytes> Find(MDB_txn* txn, MDB_dbi table, Bytes key, const fs::path& file) {
+  MDB_val k = ToValue(key), v;
+  const int code = mdb_get(txn, table, &k, &v);
+  if (code == MDB_NOTFOUND) return std::nullopt;
+  Check(code, file, "reading");
+  return Bytes(static_cast<const std::byte*>(v.mv_data), v.mv_size);
+}
+
+Bytes AsBytes(const std::uint32_t& key) { return std::as_bytes(std::span(&key, 1)); }
+Bytes AsBytes(const std::string& key) { return std::as_bytes(std::span(key)); }
+
+// An environment with one transaction and its tables, closed in the right order.
+struct Session {
+  fs::path file;
+  MDB_env* env = nullptr;
+  MDB_txn* txn = nullptr;
+  std::array<MDB_dbi, kTableNames.size()> tables{};
+
+  Session(const fs::path& path, bool writing, bool create) : file(path) {
+    try {
+      Open(writing, create);
+    } catch (...) {
+      Close();
+      throw;
+    }
+  }
+  ~Session() { Close(); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void Open(bool writing, bool create) {
+    if (!create) {
+      Require(fs::exists(file), file.string(), "no such map",
+              "make one with: recollect map create");
+      Require(fs::is_regular_file(file), file.string(), "is no file, so no map");
+      Require(fs::file_size(file) > 0, file.string(), "is empty, so no map");
+    }
+    Check(mdb_env_create(&env), file, "opening");
+    Check(mdb_env_set_maxdbs(env, kTableNames.size()), file, "opening");
+    Check(mdb_env_set_mapsize(env, kAddressSpace), file, "opening");
+    const unsigned flags = MDB_NOSUBDIR | MDB_NOTLS | (writing ? 0u : MDB_RDONLY);
+    int code = mdb_env_open(env, file.c_str(), flags, 0644);
+    if (!writing && (code == EACCES || code == EROFS)) {
+      // No right to keep the lock file beside the map: then nobody here can be writing it either.
+      Close();
+      Check(mdb_env_create(&env), file, "opening");
+      Check(mdb_env_set_maxdbs(env, kTableNames.size()), file, "opening");
+      code = mdb_env_open(env, file.c_str(), flags | MDB_NOLOCK, 0644);
+    }
+    Check(code, file, "opening");
+    CheckWhole();
+    Begin(writing);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      const unsigned kind = i == 0 ? 0u : MDB_INTEGERKEY;
+      Check(mdb_dbi_open(txn, kTableNames[i], kind | (create ? MDB_CREATE : 0u), &tables[i]), file,
+            "opening");
+    }
+  }
+
+  void Begin(bool writing) {
+    Check(mdb_txn_begin(env, nullptr, writing ? 0u : MDB_RDONLY, &txn), file, "opening");
+  }
+
+  // A file cut short would end the process with SIGBUS when its lost pages are touched.
+  void CheckWhole() const {
+    MDB_envinfo info;
+    MDB_stat stat;
+    Check(mdb_env_info(env, &info), file, "opening");
+    Check(mdb_env_stat(env, &stat), file, "opening");
+    const std::size_t pages = info.me_last_pgno + 1;
+    Require(fs::file_size(file) >= pages * stat.ms_psize || info.me_last_txnid == 0, file.string(),
+            fmt::format("is cut short: {} bytes of {}", fs::file_size(file), pages * stat.ms_psize),
+            "copy or create the map again");
+  }
+
+  void Close() {
+    if (txn != nullptr) mdb_txn_abort(std::exchange(txn, nullptr));
+    if (env != nullptr) mdb_env_close(std::exchange(env, nullptr));
+  }
+
+  MDB_dbi Handle(Table table) const { return tables[static_cast<std::size_t>(table)]; }
+};
+
+}  // namespace
+
+struct StoreReader::State : Session {
+  using Session::Session;
+};
+
+StoreReader::StoreReader(const fs::path& file)
+    : state_(std::make_unique<State>(file, /*writing=*/false, /*create=*/false)) {}
+StoreReader::~StoreReader() = default;
+StoreReader::StoreReader(StoreReader&&) noexcept = default;
+StoreReader& StoreReader::operator=(StoreReader&&) noexcept = default;
+
+std::optional<Bytes> StoreReader::Get(Table table, std::uint32_t key) const {
+  return Find(state_->txn, state_->Handle(table), AsBytes(key), state_->file);
+}
+
+std::optional<Bytes> StoreReader::Get(const std::string& meta_key) const {
+  return Find(state_->txn, state_->Handle(Table::kMeta), AsBytes(meta_key), state_->file);
+}
+
+std::size_t StoreReader::Count(Table table) const {
+  MDB_stat stat;
+  Check(mdb_stat(state_->txn, state_->Handle(table), &stat), state_->file, "reading");
+  return stat.ms_entries;
+}
+
+std::size_t StoreReader::FileBytes() const { return fs::file_size(state_->file); }
+
+struct StoreWriter::State : Session {
+  using Session::Session;
+};
+
+StoreWriter::StoreWriter(const fs::path& file, bool create)
+    : state_(std::make_unique<State>(file, /*writing=*/true, create)) {}
+StoreWriter::~StoreWriter() = default;
+
+void StoreWriter::Put(Table table, std::uint32_t key, Bytes value) {
+  MDB_val k = ToValue(AsBytes(key)), v = ToValue(value);
+  Check(mdb_put(state_->txn, state_->Handle(table), &k, &v, 0), state_->file, "writing");
+}
+
+void StoreWriter::Put(const std::string& meta_key, Bytes value) {
+  MDB_val k = ToValue(AsBytes(meta_key)), v = ToValue(value);
+  Check(mdb_put(state_->txn, state_->Handle(Table::kMeta), &k, &v, 0), state_->file, "writing");
+}
+
+std::optional<Bytes> StoreWriter::Get(Table table, std::uint32_t key) const {
+  return Find(state_->txn, state_->Handle(table), AsBytes(key), state_->file);
+}
+
+void StoreWriter::Commit() {
+  Check(mdb_txn_commit(std::exchange(state_->txn, nullptr)), state_->file, "writing");
+  Check(mdb_env_sync(state_->env, 1), state_->file, "writing");
+  state_->Begin(/*writing=*/true);
+}
+
+void CreateStore(const fs::path& file, const std::function<void(StoreWriter&)>& fill) {
+  AtomicWrite(file, [&](const fs::path& temporary) {
+    const fs::path lock = temporary.string() + "-lock";
+    const auto remove_lock = [&] {
+      std::error_code ignored;
+      fs::remove(lock, ignored);
+    };
+    try {
+      StoreWriter writer(temporary, /*create=*/true);
+      fill(writer);
+      writer.Commit();
+    } catch (...) {
+      remove_lock();
+      throw;
+    }
+    remove_lock();
+  });
+}
+
+}  // namespace recollect
