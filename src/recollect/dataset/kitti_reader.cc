@@ -39,11 +39,13 @@ NumberedFiles ListImages(const fs::path& folder) {
   return images;
 }
 
+Projection ReadMatrix(const TextTable& table, const TextTable::Row& row, std::size_t first) {
+  const std::array<double, 12> values = table.Numbers<12>(row, first);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(values.data());
+}
+
 Projection ReadProjection(const TextTable& table, const TextTable::Row& row, std::size_t first) {
-  Projection P;
-  for (int i = 0; i < 12; ++i) {
-    P(i / 4, i % 4) = table.Number(row, first + static_cast<std::size_t>(i));
-  }
+  const Projection P = ReadMatrix(table, row, first);
   if (P(0, 0) <= 0 || P(1, 1) <= 0) table.Fail(row, "focal length is not positive");
   Eigen::Matrix3d K = P.leftCols<3>();
   K(0, 0) = K(1, 1) = K(0, 2) = K(1, 2) = 0;
@@ -86,21 +88,12 @@ std::vector<double> ReadTimes(const fs::path& path) {
 std::vector<GpsFix> ReadGps(const fs::path& path) {
   const TextTable table(path, ',');
   std::vector<GpsFix> fixes;
-  for (const TextTable::Row& row : table.rows()) {
-    if (row.fields.front() == "time") continue;
-    table.RequireFields(row, 5, "time,x,y,z,quality");
-    GpsFix fix;
-    fix.time = table.Number(row, 0);
-    for (int i = 0; i < 3; ++i) fix.p_world[i] = table.Number(row, static_cast<std::size_t>(i) + 1);
-    const double quality = table.Number(row, 4);
-    if (quality < 0 || quality > 9 || quality != std::floor(quality)) {
-      table.Fail(row, fmt::format("quality {} is none of 0..9", quality));
-    }
-    fix.quality = static_cast<int>(quality);
-    if (!fixes.empty() && fix.time < fixes.back().time) {
+  for (const TextTable::Row& row : table.RowsAfterHeader("time x y z quality")) {
+    const std::array<double, 4> v = table.Numbers<4>(row);
+    fixes.push_back({v[0], {v[1], v[2], v[3]}, table.Quality(row, 4)});
+    if (fixes.size() > 1 && v[0] < fixes[fixes.size() - 2].time) {
       table.Fail(row, "time is before the one before");
     }
-    fixes.push_back(fix);
   }
   return fixes;
 }
@@ -160,8 +153,7 @@ std::vector<SE3> ReadKittiPoses(const fs::path& path) {
   poses.reserve(table.rows().size());
   for (const TextTable::Row& row : table.rows()) {
     table.RequireFields(row, 12, "a 3x4 matrix");
-    Projection T;
-    for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = table.Number(row, static_cast<std::size_t>(i));
+    const Projection T = ReadMatrix(table, row, 0);
     const Eigen::Matrix3d R = T.leftCols<3>();
     if (!IsRotation(R)) table.Fail(row, "the left 3x3 block is not a rotation");
     poses.emplace_back(NearestRotation(R), T.col(3));

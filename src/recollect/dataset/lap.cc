@@ -1,6 +1,7 @@
 #include "recollect/dataset/lap.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "recollect/core/error.h"
@@ -22,6 +23,16 @@ Lap Subset(const Lap& lap, const std::vector<std::size_t>& frames) {
   subset.frames.reserve(frames.size());
   for (const std::size_t frame : frames) subset.frames.push_back(lap.frames.at(frame));
   return subset;
+}
+
+const GpsFix* NearestFix(const Lap& lap, double time) {
+  if (lap.gps.empty()) return nullptr;
+  const auto after =
+      std::lower_bound(lap.gps.begin(), lap.gps.end(), time,
+                       [](const GpsFix& fix, double wanted) { return fix.time < wanted; });
+  if (after == lap.gps.begin()) return &*after;
+  const auto before = after - 1;
+  return after != lap.gps.end() && after->time - time < time - before->time ? &*after : &*before;
 }
 
 PinholeCamera DepthCamera(const PinholeCamera& camera, int width, int height,

@@ -58,6 +58,10 @@ double HeadingDifference(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 // The lap with only `frames` of it, in that order; the satellite fixes stay.
 Lap Subset(const Lap& lap, const std::vector<std::size_t>& frames);
 
+// The satellite fix nearest in time to `time`, nullptr where the lap has none at all. It may be of
+// quality 0, and far off in time where reception was lost.
+const GpsFix* NearestFix(const Lap& lap, double time);
+
 // The camera of a depth image of width x height pixels that belongs to an image of `camera`: the
 // same, or every n-th pixel of every n-th row (pixel (i, j) is then (n i, n j) of the image).
 // Throws Error naming `where` when the size is no such whole fraction.

@@ -6,6 +6,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/kitti_reader.h"
+#include "recollect/dataset/ufes_reader.h"
 
 namespace recollect {
 namespace {
@@ -20,6 +21,7 @@ constexpr std::array<std::pair<std::string_view, Format>, 4> kFormats = {{{"gues
 // The format whose marks the folder bears, kGuess where it bears none.
 Format FormatOf(const fs::path& folder) {
   if (LooksLikeKitti(folder)) return Format::kKitti;
+  if (LooksLikeUfes(folder)) return Format::kUfes;
   return Format::kGuess;
 }
 
@@ -27,6 +29,8 @@ std::vector<Lap> ReadFolder(const fs::path& folder, Format format) {
   switch (format) {
     case Format::kKitti:
       return {ReadKittiLap(folder)};
+    case Format::kUfes:
+      return ReadUfesLaps(folder);
     default:
       return {};
   }

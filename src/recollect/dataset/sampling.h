@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "recollect/dataset/lap.h"
+#include "recollect/dataset/track.h"
 
 namespace recollect {
 
@@ -12,6 +12,7 @@ namespace recollect {
 // each that is at least so far from the last kept one, or whose heading differs from it by at
 // least `max_yaw_rad`. Indices into lap.frames, increasing.
 std::vector<std::size_t> SampleFrames(const Lap& lap, double spacing_m,
-                                      double max_yaw_rad = 10 * std::numbers::pi / 180);
+                                      double max_yaw_rad = 10 * std::numbers::pi / 180,
+                                      YawRule rule = YawRule::kShortest);
 
 }  // namespace recollect

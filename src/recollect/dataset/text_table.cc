@@ -52,6 +52,17 @@ TextTable::TextTable(const std::filesystem::path& path, char separator)
   }
 }
 
+std::span<const TextTable::Row> TextTable::RowsAfterHeader(std::string_view header) const {
+  const std::vector<std::string_view> names = Fields(header, ' ');
+  Require(!rows_.empty(), path_.string(), "is empty");
+  if (rows_.front().fields != names) {
+    Fail(rows_.front(), fmt::format("not the header '{}'", header));
+  }
+  const auto rows = std::span(rows_).subspan(1);
+  for (const Row& row : rows) RequireFields(row, names.size(), header);
+  return rows;
+}
+
 double TextTable::Number(const Row& row, std::size_t field) const {
   const std::string_view text = row.fields.at(field);
   double value = 0;
@@ -60,6 +71,14 @@ double TextTable::Number(const Row& row, std::size_t field) const {
   if (code != std::errc() || stop != end) Fail(row, fmt::format("'{}' is not a number", text));
   if (!std::isfinite(value)) Fail(row, fmt::format("'{}' is not a finite number", text));
   return value;
+}
+
+int TextTable::Quality(const Row& row, std::size_t field) const {
+  const double quality = Number(row, field);
+  if (quality < 0 || quality > 9 || quality != std::floor(quality)) {
+    Fail(row, fmt::format("quality {} is none of 0..9", quality));
+  }
+  return static_cast<int>(quality);
 }
 
 void TextTable::RequireFields(const Row& row, std::size_t count, std::string_view what) const {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +19,8 @@ class TextTable {
     std::vector<std::string_view> fields;
   };
 
-  // Reads the file whole. `separators` are the characters between fields; blanks at either end
-  // of a field never belong to it. Throws Error when the file cannot be read.
+  // Reads the file whole. `separator` is what stands between fields: ' ' means blanks and tabs,
+  // any number of them; another character stands alone, and blanks about fields are dropped.
   explicit TextTable(const std::filesystem::path& path, char separator = ' ');
   TextTable(const TextTable&) = delete;
   TextTable& operator=(const TextTable&) = delete;
@@ -26,8 +28,22 @@ class TextTable {
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Row>& rows() const { return rows_; }
 
-  // The finite number in a field of a row that has it. Throws Error where it is none.
+  // All rows but the first, which must consist of `header`, names with single blanks between them;
+  // each must have as many fields.
+  std::span<const Row> RowsAfterHeader(std::string_view header) const;
+
+  // The finite number in a field of a row that has it.
   double Number(const Row& row, std::size_t field) const;
+  // The first N fields, or those from `first` on.
+  template <std::size_t N>
+  std::array<double, N> Numbers(const Row& row, std::size_t first = 0) const {
+    std::array<double, N> numbers;
+    for (std::size_t i = 0; i < N; ++i) numbers[i] = Number(row, first + i);
+    return numbers;
+  }
+  // A satellite fix's quality: a whole number from 0 to 9.
+  int Quality(const Row& row, std::size_t field) const;
+
   // Throws Error unless the row has `count` fields; `what` says what they should be.
   void RequireFields(const Row& row, std::size_t count, std::string_view what) const;
   [[noreturn]] void Fail(const Row& row, const std::string& what,
