@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <numeric>
+#include <tuple>
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/pairing.h"
 #include "recollect/dataset/reader.h"
 #include "recollect/dataset/registration.h"
 #include "recollect/dataset/sampling.h"
+#include "recollect/evaluation/statistics.h"
 
 namespace recollect {
 namespace {
@@ -39,19 +39,6 @@ const Lap& Find(const std::vector<Lap>& laps, const std::string& name,
   Require(found != laps.end(), (folder / fmt::format("camerapos-{}.txt", name)).string(),
           "no such file", "the tables need all ten laps and the registration lap");
   return *found;
-}
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-// The value below which a share of the values lies, interpolated between neighbours.
-double Quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double rank = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], rank - static_cast<double>(below));
 }
 
 // The distances of all pairs of live laps at 1 m with key laps at 5 m.
@@ -147,11 +134,11 @@ DataTables ComputeDataTables(const std::filesystem::path& folder) {
   const Lap& test = live[kTestLap];
   Require(!test.gps.empty(), (folder / fmt::format("cameragps-{}.txt", test.name)).string(),
           "no satellite fixes", "the tables need those of the test lap");
-  const std::vector<double> gps = GpsErrors(test);
-  tables.gps = {static_cast<double>(gps.size()) / static_cast<double>(test.frames.size()),
-                Mean(gps), Quantile(gps, 0.5), Quantile(gps, 0.75)};
-  tables.baselines = {Mean(NearestDistances(test, key, kPlaceLaps)),
-                      Mean(NearestDistances(test, key, {0})), Mean(test_pairs)};
+  const Summary gps = Summarise(GpsErrors(test));
+  tables.gps = {static_cast<double>(gps.count) / static_cast<double>(test.frames.size()), gps.mean,
+                gps.median, gps.p75};
+  tables.baselines = {Summarise(NearestDistances(test, key, kPlaceLaps)).mean,
+                      Summarise(NearestDistances(test, key, {0})).mean, Summarise(test_pairs).mean};
   return tables;
 }
 
