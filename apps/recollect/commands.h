@@ -3,4 +3,8 @@
 #include <CLI/CLI.hpp>
 
 // One function a sub-command, each in the file of its name.
-namespace recollect::app {}  // namespace recollect::app
+namespace recollect::app {
+
+void AddPlaces(CLI::App& app);
+
+}  // namespace recollect::app

@@ -1,0 +1,152 @@
+#include "recollect/wnn/encoder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+
+namespace recollect::wnn {
+namespace {
+
+// The blurring kernel of a window `width` pixels wide.
+double BlurScale(int width) { return width / 640.0; }
+int BlurSize(const NetworkOptions& options, int width) {
+  return 2 * static_cast<int>(std::lround((options.blur_size - 1) / 2.0 * BlurScale(width))) + 1;
+}
+
+// One number a pixel, by the network's code.
+void CodeRow(const std::uint8_t* pixels, int width, bool colour, std::int32_t* values) {
+  if (!colour) {
+    for (int x = 0; x < width; ++x) values[x] = pixels[x];
+    return;
+  }
+  for (int x = 0; x < width; ++x) {
+    values[x] = pixels[3 * x + 2] | pixels[3 * x + 1] << 8 | pixels[3 * x] << 16;
+  }
+}
+
+}  // namespace
+
+struct Encoder::State {
+  NetworkOptions options;
+  Synapses synapses;
+  int image_height;
+  ThreadPool& pool;
+  std::vector<std::int32_t> offsets;  // neurons x kSynapses, into values
+  std::vector<std::int32_t> values;   // the sharp window, then the blurred one
+  cv::Mat window, blurred;
+
+  State(const NetworkOptions& o, int width, int height, ThreadPool& p)
+      : options(o), synapses(o, width, height), image_height(height), pool(p) {
+    const int uniform = kSynapses - options.gaussian_synapses;
+    const int area = synapses.window_width() * synapses.window_height();
+    values.resize(static_cast<std::size_t>(options.blur ? 2 * area : area));
+    for (int n = 0; n < synapses.neurons(); ++n) {
+      for (int i = 0; i < kSynapses; ++i) {
+        const Pixel pixel = synapses.Of(n)[i];
+        const int base = options.blur && i >= uniform ? area : 0;
+        offsets.push_back(base + pixel.y * synapses.window_width() + pixel.x);
+      }
+    }
+  }
+
+  void Check(const ImageView& image) const {
+    const int width = synapses.window_width();
+    Require(image.data && image.width == width && image.height == image_height, "image",
+            fmt::format("{} x {} pixels where the network looks at {} x {}", image.width,
+                        image.height, width, image_height),
+            "scale it, or make an encoder for its size");
+    Require((image.channels == 1 || image.channels == 3) &&
+                image.stride >= std::ptrdiff_t{image.width} * image.channels,
+            "image", fmt::format("{} channels with a stride of {}", image.channels, image.stride),
+            "give 1 or 3 channels of 8 bits");
+  }
+
+  // Fills `window` with the part of the image that is looked at, in the channels of the code.
+  void Look(const ImageView& image, Pixel shift) {
+    const cv::Mat whole(image.height, image.width, image.channels == 3 ? CV_8UC3 : CV_8UC1,
+                        const_cast<std::uint8_t*>(image.data),
+                        static_cast<std::size_t>(image.stride));
+    const int width = synapses.window_width(), height = synapses.window_height();
+    cv::Mat seen = whole.rowRange(0, height);
+    if (shift.x != 0 || shift.y != 0) {
+      cv::Mat bordered;
+      const int dx = std::abs(shift.x), dy = std::abs(shift.y);
+      cv::copyMakeBorder(whole, bordered, dy, dy, dx, dx, cv::BORDER_REPLICATE);
+      seen = bordered(cv::Rect(dx + shift.x, dy + shift.y, width, height)).clone();
+    }
+    if (image.channels == 3 && options.code == Code::kGray) {
+      cv::cvtColor(seen, window, cv::COLOR_BGR2GRAY);
+    } else {
+      window = seen;
+    }
+  }
+
+  void CodeRows(const cv::Mat& from, std::int32_t* to) {
+    pool.For(from.rows, 64, [&](std::int64_t begin, std::int64_t end) {
+      for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+        CodeRow(from.ptr(y), from.cols, from.channels() == 3, to + std::ptrdiff_t{y} * from.cols);
+      }
+    });
+  }
+
+  // The Minchinton cells of one neuron.
+  void Cells(int neuron, std::uint64_t* words) const {
+    const std::int32_t* offset = &offsets[static_cast<std::size_t>(neuron) * kSynapses];
+    std::int32_t value[kSynapses + 1];
+    for (int i = 0; i < kSynapses; ++i) value[i] = values[static_cast<std::size_t>(offset[i])];
+    value[kSynapses] = value[0];
+    for (int w = 0; w < kWords; ++w) {
+      std::uint64_t word = 0;
+      for (int i = 0; i < 64; ++i) {
+        word |= std::uint64_t{value[64 * w + i] < value[64 * w + i + 1]} << i;
+      }
+      words[w] = word;
+    }
+  }
+};
+
+Encoder::Encoder(const NetworkOptions& options, int image_width, int image_height, ThreadPool& pool)
+    : state_(std::make_unique<State>(options, image_width, image_height, pool)) {}
+Encoder::~Encoder() = default;
+Encoder::Encoder(Encoder&&) noexcept = default;
+Encoder& Encoder::operator=(Encoder&&) noexcept = default;
+
+const Synapses& Encoder::synapses() const { return state_->synapses; }
+
+std::size_t Encoder::pattern_words() const {
+  return static_cast<std::size_t>(state_->synapses.neurons()) * kWords;
+}
+
+void Encoder::Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift) {
+  State& state = *state_;
+  state.Check(image);
+  Require(pattern.size() == pattern_words(), "pattern",
+          fmt::format("room for {} words where {} are written", pattern.size(), pattern_words()));
+  state.Look(image, shift);
+  state.CodeRows(state.window, state.values.data());
+  if (state.options.blur) {
+    const int size = BlurSize(state.options, state.window.cols);
+    cv::GaussianBlur(state.window, state.blurred, cv::Size(size, size),
+                     state.options.blur_sigma * BlurScale(state.window.cols), 0,
+                     cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
+    state.CodeRows(state.blurred, state.values.data() + state.values.size() / 2);
+  }
+  state.pool.For(state.synapses.neurons(), 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n) {
+      state.Cells(static_cast<int>(n), &pattern[static_cast<std::size_t>(n) * kWords]);
+    }
+  });
+}
+
+std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) {
+  std::vector<std::uint64_t> pattern(pattern_words());
+  Encode(image, pattern, shift);
+  return pattern;
+}
+
+}  // namespace recollect::wnn
