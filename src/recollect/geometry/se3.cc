@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
-#include <numbers>
 
 namespace recollect {
 namespace {
@@ -16,7 +15,9 @@ double SinOver(double t2) {
   return t2 < kSmall ? 1 - t2 / 6 : std::sin(std::sqrt(t2)) / std::sqrt(t2);
 }
 double OneMinusCosOver(double t2) {
-  return t2 < kSmall ? 0.5 - t2 / 24 : (1 - std::cos(std::sqrt(t2))) / t2;
+  // As twice the squared sine of the half angle: no digits cancel.
+  const double half = SinOver(t2 / 4);
+  return half * half / 2;
 }
 double ThetaMinusSinOver(double t2) {
   const double t = std::sqrt(t2);
@@ -56,8 +57,9 @@ Eigen::Matrix3d LeftJacobianInverseSo3(const Eigen::Vector3d& w) {
   const double t2 = w.squaredNorm();
   const double t = std::sqrt(t2);
   const Eigen::Matrix3d W = Hat(w);
-  const double c = t2 < 1e-4 ? 1.0 / 12 + t2 / 720 + t2 * t2 / 30240
-                             : 1 / t2 - (1 + std::cos(t)) / (2 * t * std::sin(t));
+  // (1 + cos t) / sin t is written as 1 / tan(t / 2), which keeps its digits at pi.
+  const double c =
+      t2 < 1e-4 ? 1.0 / 12 + t2 / 720 + t2 * t2 / 30240 : 1 / t2 - 1 / (2 * t * std::tan(t / 2));
   return Eigen::Matrix3d::Identity() - 0.5 * W + c * W * W;
 }
 
