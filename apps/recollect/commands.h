@@ -5,6 +5,7 @@
 // One function a sub-command, each in the file of its name.
 namespace recollect::app {
 
+void AddMap(CLI::App& app);
 void AddPlaces(CLI::App& app);
 
 }  // namespace recollect::app

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", RECOLLECT_VERSION);
   using namespace recollect::app;
+  AddMap(app);
   AddPlaces(app);
   try {
     app.parse(argc, argv);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <opencv2/core.hpp>
 
 #include "command.h"
@@ -11,6 +10,7 @@
 #include "recollect/dataset/image_folder.h"
 #include "recollect/wnn/encoder.h"
 #include "recollect/wnn/search.h"
+#include "wnn_flags.h"
 
 namespace recollect::app {
 namespace {
@@ -78,7 +78,6 @@ void RunPlaces(PlacesFlags flags) {
 
 void AddPlaces(CLI::App& app) {
   auto flags = std::make_shared<PlacesFlags>();
-  wnn::NetworkOptions& network = flags->network;
   CLI::App* command =
       AddCommand(app, "places",
                  "Recognise places: two folders of images in the same order, one of them learnt",
@@ -87,24 +86,7 @@ void AddPlaces(CLI::App& app) {
       ->type_name("DIR")
       ->required();
   command->add_option("--query", flags->query, "images to recognise")->type_name("DIR")->required();
-  const std::map<std::string, wnn::Code> codes = {{"colour", wnn::Code::kColour},
-                                                  {"gray", wnn::Code::kGray}};
-  command->add_option("--code", network.code, "value of a pixel: colour or gray")
-      ->transform(CLI::CheckedTransformer(codes))
-      ->default_str("colour");
-  command->add_flag("--blur,!--no-blur", network.blur,
-                    "blur the image for the Gaussian synapses (default)");
-  command->add_option("--neurons-x", network.neurons_x, "columns of neurons")
-      ->capture_default_str();
-  command->add_option("--neurons-y", network.neurons_y, "rows of neurons")->capture_default_str();
-  command
-      ->add_option("--gaussian-synapses", network.gaussian_synapses,
-                   "of a neuron's 128, how many lie around it")
-      ->capture_default_str();
-  command
-      ->add_option("--sigma", network.gaussian_sigma,
-                   "their spread, pixels in a 640 pixels wide image")
-      ->capture_default_str();
+  AddWnnFlags(*command, flags->network);
 }
 
 }  // namespace recollect::app

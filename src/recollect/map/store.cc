@@ -137,6 +137,8 @@ std::size_t StoreReader::Count(Table table) const {
   return stat.ms_entries;
 }
 
+const fs::path& StoreReader::file() const { return state_->file; }
+
 std::size_t StoreReader::FileBytes() const { return fs::file_size(state_->file); }
 
 struct StoreWriter::State : Session {
@@ -159,6 +161,10 @@ void StoreWriter::Put(const std::string& meta_key, Bytes value) {
 
 std::optional<Bytes> StoreWriter::Get(Table table, std::uint32_t key) const {
   return Find(state_->txn, state_->Handle(table), AsBytes(key), state_->file);
+}
+
+std::optional<Bytes> StoreWriter::Get(const std::string& meta_key) const {
+  return Find(state_->txn, state_->Handle(Table::kMeta), AsBytes(meta_key), state_->file);
 }
 
 void StoreWriter::Commit() {

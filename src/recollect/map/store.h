@@ -29,7 +29,8 @@ class StoreReader {
   std::optional<Bytes> Get(Table table, std::uint32_t key) const;
   std::optional<Bytes> Get(const std::string& meta_key) const;
   std::size_t Count(Table table) const;
-  // Bytes of the file in use, all tables.
+  const std::filesystem::path& file() const;
+  // Size of the file.
   std::size_t FileBytes() const;
 
  private:
@@ -49,7 +50,9 @@ class StoreWriter {
 
   void Put(Table table, std::uint32_t key, Bytes value);
   void Put(const std::string& meta_key, Bytes value);
+  // What a reader would get after Commit; valid until the next Put or Commit.
   std::optional<Bytes> Get(Table table, std::uint32_t key) const;
+  std::optional<Bytes> Get(const std::string& meta_key) const;
   // Puts on disk what was written since the last Commit; more may be written after it.
   void Commit();
 

@@ -1,0 +1,57 @@
+#include "recollect/evaluation/evaluate.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.h"
+#include "commands.h"
+#include "laps.h"
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/evaluation/report.h"
+
+namespace recollect::app {
+namespace {
+
+struct Options {
+  Common common;
+  std::filesystem::path map, model, out;
+  LapFlags laps;
+  EvaluationOptions evaluation;
+};
+
+void Run(const Options& options) {
+  const std::vector<Lap> laps = options.laps.Read();
+  Require(laps.size() == 1, "--lap", fmt::format("{} laps where one is judged", laps.size()));
+  ThreadPool pool(options.common.threads);
+  const Map map = Map::Open(options.map);
+  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
+  const Evaluation evaluation =
+      Evaluate(localizer, laps.front(), options.evaluation, TerminalProgress());
+  fmt::print("{}", FormatTable(evaluation));
+  WriteFigures(options.common, ToFigures(evaluation));
+  if (!options.out.empty()) WriteReport(evaluation, map, options.out);
+}
+
+}  // namespace
+
+void AddEvaluate(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      AddCommand(app, "evaluate", "Localise a lap and judge the answers beside their baselines",
+                 options->common, [options] { Run(*options); });
+  command->add_option("--map", options->map, "the map")->required()->type_name("MAP");
+  command->add_option("--model", options->model, "the relative-pose network")
+      ->required()
+      ->type_name("MODEL");
+  options->laps.AddTo(*command);
+  command->add_option("--spacing", options->evaluation.spacing_m, "metres between live images")
+      ->capture_default_str();
+  command
+      ->add_option("--out", options->out,
+                   "folder for the picture, the table, the figures and the trajectories")
+      ->type_name("DIR");
+}
+
+}  // namespace recollect::app

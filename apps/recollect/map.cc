@@ -1,0 +1,87 @@
+#include "recollect/map/map.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.h"
+#include "commands.h"
+#include "laps.h"
+#include "recollect/core/parallel.h"
+#include "wnn_flags.h"
+
+namespace recollect::app {
+namespace {
+
+struct Options {
+  Common common;
+  std::filesystem::path map;
+  LapFlags laps;
+  MapOptions create;
+};
+
+nlohmann::json Describe(const Options& options) {
+  const Map map = Map::Open(options.map);
+  const MapDescription& d = map.description();
+  nlohmann::json laps = nlohmann::json::array();
+  for (const MapLap& lap : d.laps) {
+    laps.push_back({{"name", lap.name}, {"key_frames", lap.key_frames}});
+  }
+  return {{"file", options.map.string()},
+          {"bytes", map.FileBytes()},
+          {"key_frames", map.size()},
+          {"laps", laps},
+          {"spacing_m", d.spacing_m},
+          {"image", {{"width", d.camera.left.width}, {"height", d.camera.left.height}}},
+          {"neurons", d.network.neurons()},
+          {"seed", d.network.seed}};
+}
+
+void Show(const Options& options) {
+  const nlohmann::json info = Describe(options);
+  fmt::print("{}: {} key frames, {:.1f} MB\n", options.map.string(), info["key_frames"].get<int>(),
+             info["bytes"].get<double>() / 1e6);
+  fmt::print("  images {}x{}, {} neurons, a key frame every {} m\n",
+             info["image"]["width"].get<int>(), info["image"]["height"].get<int>(),
+             info["neurons"].get<int>(), info["spacing_m"].get<double>());
+  for (const auto& lap : info["laps"]) {
+    fmt::print("  {:<24}{:>7} key frames\n", lap["name"].get<std::string>(),
+               lap["key_frames"].get<int>());
+  }
+  WriteFigures(options.common, info);
+}
+
+}  // namespace
+
+void AddMap(CLI::App& app) {
+  CLI::App* map = app.add_subcommand("map", "Make maps and look at them");
+  map->require_subcommand(1);
+
+  const auto create = std::make_shared<Options>();
+  CLI::App* command = AddCommand(*map, "create", "Make a map of laps", create->common, [create] {
+    ThreadPool pool(create->common.threads);
+    create->create.network.seed = create->common.seed;
+    CreateMap(create->map, create->laps.Read(), create->create, pool, TerminalProgress());
+    Show(*create);
+  });
+  command->add_option("map", create->map, "file to write")->required()->type_name("MAP");
+  create->laps.AddTo(*command);
+  command->add_option("--spacing", create->create.spacing_m, "metres between key frames of a lap")
+      ->capture_default_str();
+  AddWnnFlags(*command, create->create.network);
+
+  const auto add = std::make_shared<Options>();
+  command = AddCommand(*map, "add", "Append laps to a map", add->common, [add] {
+    ThreadPool pool(add->common.threads);
+    AddToMap(add->map, add->laps.Read(), pool, TerminalProgress());
+    Show(*add);
+  });
+  command->add_option("map", add->map, "file to append to")->required()->type_name("MAP");
+  add->laps.AddTo(*command);
+
+  const auto info = std::make_shared<Options>();
+  command = AddCommand(*map, "info", "Say what a map holds", info->common, [info] { Show(*info); });
+  command->add_option("map", info->map, "file to look at")->required()->type_name("MAP");
+}
+
+}  // namespace recollect::app

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "recollect/core/progress.h"
+#include "recollect/dataset/lap.h"
+#include "recollect/evaluation/statistics.h"
+#include "recollect/localization/localizer.h"
+
+namespace recollect {
+
+// How far an estimated pose is from the true one.
+struct PoseError {
+  double position_m = 0;
+  double heading_deg = 0;  // between the directions ahead
+};
+
+// One way to say where each image was taken, over the frames of the live lap. The paper's system
+// never stands alone: beside it, from the same frames,
+//   system      WNN + CNN: the recollected key frame and the regressed pose to it
+//   retrieval   the recollected key frame's pose as it is
+//   oracle      the nearest key frame's pose as it is, which no system is told
+//   oracle_cnn  the nearest key frame and the regressed pose to it (the paper's GT + CNN)
+//   gps         the satellite receiver's position, where the lap has one
+struct Row {
+  std::string name;
+  std::vector<std::size_t> frames;  // indices into Evaluation::frames that have an answer
+  std::vector<PoseError> errors;    // of those
+  double availability = 0;          // their share
+  bool has_heading = true;
+  Summary position_m, heading_deg;
+};
+
+// What became of one live image.
+struct LiveFrame {
+  std::size_t frame = 0;  // in the lap
+  double time = 0;
+  SE3 true_world_from_camera;
+  int nearest_key_frame = 0;  // the oracle's
+  Localization answer;
+  int error_frames = 0;  // |frames| between this one and that nearest to the recollected key frame
+  int error_labels = 0;  // |places| between this one's and the recollected key frame's
+};
+
+struct EvaluationOptions {
+  double spacing_m = 1;         // the live lap is thinned to this
+  double good_retrieval_m = 5;  // see Evaluation::rows_good_retrieval
+};
+
+struct Evaluation {
+  std::string lap;
+  std::vector<LiveFrame> frames;
+  std::vector<Row> rows;
+  // `system` and `retrieval` again, only where the recollected key frame lies within
+  // good_retrieval_m of the truth: what the network adds where it has a chance.
+  std::vector<Row> rows_good_retrieval;
+  // Maximum Allowed Error -> share of frames whose place is right within it, in both readings of
+  // the paper: counted in live frames, and in the map's places (key frames of its first lap).
+  std::map<int, double> within_frames, within_labels;
+  // Step -> p50, p99 in milliseconds.
+  std::map<std::string, std::pair<double, double>> latency_ms;
+};
+
+// Localises the frames of a lap that was not mapped and judges the answers. Throws Error where lap
+// and map do not share a camera, or the lap has no images or fewer than two frames.
+Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptions& options = {},
+                    const ProgressSink& progress = {});
+
+// Of a and b, as angle between where their cameras look, and between their centres.
+PoseError Compare(const SE3& world_from_estimate, const SE3& world_from_truth);
+
+}  // namespace recollect

@@ -1,0 +1,102 @@
+#include <cstdio>
+#include <cstdlib>
+
+#include "recollect/core/error.h"
+#include "recollect/core/files.h"
+#include "recollect/evaluation/report.h"
+
+namespace recollect {
+namespace {
+
+void RunGnuplot(const std::string& script, const std::filesystem::path& where) {
+  FILE* pipe = popen("gnuplot 2>/dev/null", "w");
+  Require(pipe != nullptr, where.string(), "gnuplot cannot be started");
+  const bool written = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
+  const int status = pclose(pipe);
+  Require(written && status == 0, where.string(), "gnuplot could not draw it",
+          "install it with: apt-get install gnuplot-nox");
+}
+
+// The two world axes in which the route extends most, in order: the plan of a world with z up, and
+// of one whose axes are a camera's as well.
+std::pair<int, int> PlanAxes(const Evaluation& e) {
+  Eigen::Vector3d low = e.frames.front().true_world_from_camera.translation(), high = low;
+  for (const LiveFrame& f : e.frames) {
+    low = low.cwiseMin(f.true_world_from_camera.translation());
+    high = high.cwiseMax(f.true_world_from_camera.translation());
+  }
+  int flat = 0;
+  (high - low).minCoeff(&flat);
+  return {flat == 0 ? 1 : 0, flat == 2 ? 1 : 2};
+}
+
+}  // namespace
+
+void PlotEvaluation(const Evaluation& e, const Map& map, const std::filesystem::path& png) {
+  const auto [x, y] = PlanAxes(e);
+  const auto point = [x = x, y = y](const SE3& pose) {
+    return fmt::format("{:.4f} {:.4f}", pose.translation()[x], pose.translation()[y]);
+  };
+  std::string truth, keys, estimates, links;
+  for (const LiveFrame& f : e.frames) {
+    const double error =
+        (f.answer.world_from_camera.translation() - f.true_world_from_camera.translation()).norm();
+    truth += point(f.true_world_from_camera) + "\n";
+    estimates += fmt::format("{} {:.4f}\n", point(f.answer.world_from_camera), error);
+    links += fmt::format("{}\n{}\n\n", point(f.true_world_from_camera),
+                         point(f.answer.world_from_camera));
+  }
+  for (int key = 0; key < map.size(); ++key) keys += point(map.At(key).world_from_camera) + "\n";
+
+  std::string script;
+  const auto data = [&](const std::string& name, const std::string& rows) {
+    script += fmt::format("${} << EOD\n{}EOD\n", name, rows);
+  };
+  data("truth", truth);
+  data("keys", keys);
+  data("estimates", estimates);
+  data("links", links);
+  std::string curves;
+  for (const Row& row : e.rows) {
+    std::string rows;
+    for (std::size_t i = 0; i < row.frames.size(); ++i) {
+      rows += fmt::format("{} {:.4f}\n", row.frames[i], std::max(1e-3, row.errors[i].position_m));
+    }
+    if (rows.empty()) continue;
+    data(row.name, rows);
+    curves +=
+        fmt::format("{}${} with linespoints pt 7 ps 0.25 title '{} ({:.2f} m mean)' noenhanced",
+                    curves.empty() ? "" : ", ", row.name, row.name, row.position_m.mean);
+  }
+  const char* axis[] = {"x", "y", "z"};
+  AtomicWrite(png, [&](const std::filesystem::path& temporary) {
+    script += fmt::format(R"(
+set terminal pngcairo size 1400,1300 font 'sans,11'
+set output '{}'
+set multiplot layout 2,1
+set grid lc rgb '#dddddd'
+set key outside top center horizontal
+set title '{}: where the images were taken, and where they are said to be' noenhanced
+set size ratio -1
+set xlabel '{} [m]'
+set ylabel '{} [m]'
+set logscale cb
+set cbrange [0.1:30]
+set cblabel 'error [m]'
+set palette defined (0 '#1a9850', 1 '#fee08b', 2 '#d73027')
+plot $links with lines lc rgb '#cccccc' title '', $truth with lines lw 2 lc rgb '#333333' title 'truth', $keys with points pt 1 ps 0.8 lc rgb '#4575b4' title 'key frames', $estimates using 1:2:3 with points pt 7 ps 0.6 palette title 'system'
+unset colorbox
+set size noratio
+set title 'position error along the way'
+set xlabel 'live image'
+set ylabel 'error [m]'
+set logscale y
+plot {}
+unset multiplot
+)",
+                          temporary.string(), e.lap, axis[x], axis[y], curves);
+    RunGnuplot(script, png);
+  });
+}
+
+}  // namespace recollect

@@ -1,0 +1,126 @@
+#include "recollect/evaluation/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "recollect/core/files.h"
+#include "recollect/dataset/writer.h"
+
+namespace recollect {
+namespace {
+
+using nlohmann::json;
+
+json ToJson(const Summary& s) {
+  return {{"mean", s.mean}, {"median", s.median}, {"p75", s.p75}, {"p95", s.p95}, {"max", s.max}};
+}
+
+json ToJson(const std::map<int, double>& shares) {
+  json j = json::object();
+  for (const auto& [allowed, share] : shares) j[std::to_string(allowed)] = share;
+  return j;
+}
+
+std::string FormatRow(const std::string& name, const Row& row) {
+  const Summary& p = row.position_m;
+  std::string line = fmt::format("  {:<22}{:8.3f}{:8.3f}{:8.3f}{:8.3f}{:9.3f}", name, p.mean,
+                                 p.median, p.p75, p.p95, p.max);
+  line += row.has_heading
+              ? fmt::format("{:9.2f}{:8.2f}", row.heading_deg.median, row.heading_deg.p95)
+              : fmt::format("{:>9}{:>8}", "-", "-");
+  return line + fmt::format("{:8.1f}\n", 100 * row.availability);
+}
+
+}  // namespace
+
+std::string FormatTable(const Evaluation& e) {
+  std::string text = fmt::format("{} frames of {}\n", e.frames.size(), e.lap);
+  text += "\n  place right within           ";
+  for (const auto& [allowed, share] : e.within_frames) text += fmt::format("{:>7}", allowed);
+  text += "\n    live frames, % of images   ";
+  for (const auto& [allowed, share] : e.within_frames) text += fmt::format("{:7.1f}", 100 * share);
+  text += "\n    mapped places, % of images ";
+  for (const auto& [allowed, share] : e.within_labels) text += fmt::format("{:7.1f}", 100 * share);
+  text += fmt::format("\n\n  {:<22}{:^41}{:^17}{:>8}\n", "", "position error, m", "heading, deg",
+                      "frames");
+  text += fmt::format("  {:<22}{:>8}{:>8}{:>8}{:>8}{:>9}{:>9}{:>8}{:>8}\n", "", "mean", "median",
+                      "p75", "p95", "max", "median", "p95", "%");
+  for (const Row& row : e.rows) text += FormatRow(row.name, row);
+  text += "  where the recollected key frame lies within 5 m of the truth:\n";
+  for (const Row& row : e.rows_good_retrieval) text += FormatRow("  " + row.name, row);
+  text += "\n  time an image, ms         p50     p99\n";
+  for (const auto& [step, times] : e.latency_ms) {
+    text += fmt::format("    {:<18}{:8.1f}{:8.1f}\n", step, times.first, times.second);
+  }
+  return text;
+}
+
+nlohmann::json ToFigures(const Evaluation& e) {
+  json figures = {
+      {"lap", e.lap},
+      {"frames", e.frames.size()},
+      {"places",
+       {{"within_frames", ToJson(e.within_frames)}, {"within_labels", ToJson(e.within_labels)}}}};
+  for (const Row& row : e.rows) {
+    figures["position_m"][row.name] = ToJson(row.position_m);
+    figures["availability"][row.name] = row.availability;
+    if (row.has_heading) figures["heading_deg"][row.name] = ToJson(row.heading_deg);
+  }
+  for (const Row& row : e.rows_good_retrieval) {
+    figures["recollected_within_5m"]["share"] = row.availability;
+    figures["recollected_within_5m"]["position_m"][row.name] = ToJson(row.position_m);
+  }
+  for (const auto& [step, times] : e.latency_ms) {
+    figures["latency_ms"][step] = {{"p50", times.first}, {"p99", times.second}};
+  }
+  return figures;
+}
+
+void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
+  std::string csv = "frame,time,true_x,true_y,true_z,x,y,z,key_frame,nearest_key_frame,confidence";
+  for (const Row& row : e.rows) {
+    csv += fmt::format(",{0}_position_m", row.name);
+    if (row.has_heading) csv += fmt::format(",{0}_heading_deg", row.name);
+  }
+  csv += '\n';
+  std::vector<std::size_t> next(e.rows.size(), 0);
+  for (std::size_t i = 0; i < e.frames.size(); ++i) {
+    const LiveFrame& f = e.frames[i];
+    const Eigen::Vector3d truth = f.true_world_from_camera.translation();
+    const Eigen::Vector3d p = f.answer.world_from_camera.translation();
+    csv += fmt::format("{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{:.4f}", f.frame,
+                       f.time, truth.x(), truth.y(), truth.z(), p.x(), p.y(), p.z(),
+                       f.answer.key_frame, f.nearest_key_frame, f.answer.confidence);
+    for (std::size_t r = 0; r < e.rows.size(); ++r) {
+      const Row& row = e.rows[r];
+      const bool answered = next[r] < row.frames.size() && row.frames[next[r]] == i;
+      csv += answered ? fmt::format(",{:.4f}", row.errors[next[r]].position_m) : ",";
+      if (row.has_heading) {
+        csv += answered ? fmt::format(",{:.4f}", row.errors[next[r]].heading_deg) : ",";
+      }
+      if (answered) ++next[r];
+    }
+    csv += '\n';
+  }
+  AtomicWrite(file, csv);
+}
+
+void WriteReport(const Evaluation& e, const Map& map, const std::filesystem::path& folder) {
+  std::vector<double> times;
+  std::vector<SE3> estimates, truths;
+  for (const LiveFrame& f : e.frames) {
+    times.push_back(f.time);
+    estimates.push_back(f.answer.world_from_camera);
+    truths.push_back(f.true_world_from_camera);
+  }
+  AtomicWrite(folder / "table.txt", FormatTable(e));
+  AtomicWrite(folder / "figures.json", ToFigures(e).dump(2) + "\n");
+  WriteFramesCsv(e, folder / "frames.csv");
+  WriteTumTrajectory(folder / "estimate.tum", times, estimates);
+  WriteKittiTrajectory(folder / "estimate.kitti", estimates);
+  WriteTumTrajectory(folder / "truth.tum", times, truths);
+  PlotEvaluation(e, map, folder / "evaluation.png");
+}
+
+}  // namespace recollect

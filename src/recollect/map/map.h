@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "recollect/core/progress.h"
+#include "recollect/dataset/lap.h"
+#include "recollect/map/description.h"
+#include "recollect/map/store.h"
+#include "recollect/wnn/memory.h"
+
+namespace recollect {
+
+class ThreadPool;
+
+// A mapped image: where its camera stood, and where it came from.
+struct KeyFrame {
+  SE3 world_from_camera;
+  double time = 0;          // seconds, the lap's own
+  std::uint32_t lap = 0;    // index into MapDescription::laps
+  std::uint32_t frame = 0;  // index into that lap's frames
+};
+
+// A map opened for reading: key frames with image and pose, and what the weightless network has
+// learnt of them, all read in place from one memory-mapped file. Opening costs a few milliseconds
+// whatever the size. Key frames are numbered from 0 in the order they were added; the number is
+// also the entry in memory().
+class Map {
+ public:
+  // Throws Error naming the file when it is missing, foreign, cut short or inconsistent.
+  static Map Open(const std::filesystem::path& file);
+
+  const MapDescription& description() const { return description_; }
+  int size() const { return memory_.entries(); }
+  std::size_t FileBytes() const { return store_.FileBytes(); }
+
+  // key in [0, size()); Error otherwise, or where the record is damaged.
+  KeyFrame At(int key) const;
+  // The mapped image, 8-bit B, G, R, of the size of description().camera.
+  cv::Mat Image(int key) const;
+  // Patterns of all key frames (labels are key frame numbers). Valid as long as the map.
+  const wnn::Memory& memory() const { return memory_; }
+
+ private:
+  Map(StoreReader store, MapDescription description);
+
+  StoreReader store_;
+  MapDescription description_;
+  wnn::Memory memory_;
+};
+
+struct MapOptions {
+  double spacing_m = 5;         // between key frames of a lap; 10 degrees of turn also make one
+  wnn::NetworkOptions network;  // the weightless network; fixed for the life of the map
+};
+
+// Makes a map of key frames sampled from `laps`, which must have images of one size and poses in
+// one world. The file appears under its name when it is whole. Throws Error on bad input, before
+// anything is written, and when writing fails.
+void CreateMap(const std::filesystem::path& file, std::span<const Lap> laps,
+               const MapOptions& options, ThreadPool& pool, const ProgressSink& progress = {});
+
+// Appends the key frames of further laps, sampled as the map's others, in one transaction: all of
+// them or, on any Error, none. What is there is neither moved nor rewritten, but for the last,
+// partly filled block of patterns.
+void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, ThreadPool& pool,
+              const ProgressSink& progress = {});
+
+}  // namespace recollect

@@ -1,0 +1,223 @@
+#include "recollect/map/map.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "recollect/core/error.h"
+#include "recollect/core/files.h"
+#include "recollect/core/parallel.h"
+#include "recollect/wnn/encoder.h"
+
+namespace recollect {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 96, kHeight = 72;
+
+class MapTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              (std::string("recollect_map_") +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    options_.spacing_m = 5;
+    options_.network.neurons_x = 12;
+    options_.network.neurons_y = 7;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // A straight drive of `frames` images of noise, 5 m apart, as JPEG or PNG files.
+  Lap MakeLap(const std::string& name, int frames, const std::string& extension = ".jpg") const {
+    Lap lap;
+    lap.name = name;
+    lap.folder = folder_ / name;
+    lap.camera = {{kWidth, kHeight, 70, 70, 47.5, 35.5}, 0.24};
+    fs::create_directories(lap.folder);
+    cv::RNG random(std::hash<std::string>{}(name));
+    for (int i = 0; i < frames; ++i) {
+      cv::Mat image(kHeight, kWidth, CV_8UC3);
+      random.fill(image, cv::RNG::UNIFORM, 0, 256);
+      const fs::path file = lap.folder / (std::to_string(i) + extension);
+      cv::imwrite(file.string(), image);
+      Frame frame;
+      frame.time = 0.5 * i;
+      frame.world_from_body =
+          SE3::FromRotationVector({0, 0.001 * i, 0}, Eigen::Vector3d(0, 0.25, 5.0 * i));
+      frame.left = file;
+      lap.frames.push_back(frame);
+    }
+    return lap;
+  }
+
+  // What the network makes of a stored image file.
+  std::vector<std::uint64_t> PatternOf(const fs::path& file) {
+    wnn::Encoder encoder(options_.network, kWidth, kHeight, pool_);
+    const cv::Mat image = cv::imread(file.string());
+    return encoder.Encode(
+        {image.data, image.cols, image.rows, 3, static_cast<std::ptrdiff_t>(image.step)});
+  }
+
+  void ExpectHolds(const Map& map, const std::vector<Lap>& laps) {
+    int key = 0;
+    for (std::size_t l = 0; l < laps.size(); ++l) {
+      for (std::size_t f = 0; f < laps[l].frames.size(); ++f, ++key) {
+        ASSERT_LT(key, map.size());
+        const KeyFrame key_frame = map.At(key);
+        EXPECT_EQ(key_frame.lap, l);
+        EXPECT_EQ(key_frame.frame, f);
+        EXPECT_EQ(key_frame.time, laps[l].frames[f].time);
+        EXPECT_EQ(key_frame.world_from_camera.Matrix(), laps[l].WorldFromCamera(f).Matrix());
+        EXPECT_EQ(map.memory().Pattern(key), PatternOf(laps[l].frames[f].left)) << key;
+      }
+    }
+    EXPECT_EQ(key, map.size());
+  }
+
+  fs::path folder_;
+  MapOptions options_;
+  ThreadPool pool_{2};
+};
+
+TEST_F(MapTest, GivesBackWhatWasMapped) {
+  const std::vector<Lap> laps = {MakeLap("one", 70), MakeLap("two", 5)};
+  CreateMap(folder_ / "m.map", laps, options_, pool_);
+  const Map map = Map::Open(folder_ / "m.map");
+  ExpectHolds(map, laps);
+  EXPECT_EQ(map.description().laps[1].name, "two");
+  EXPECT_EQ(map.description().camera.left, laps[0].camera.left);
+  EXPECT_EQ(map.description().network.neurons(), 84);
+  // JPEG files are kept as they are, to the bit.
+  const cv::Mat stored = map.Image(71), original = cv::imread(laps[1].frames[1].left.string());
+  EXPECT_EQ(cv::norm(stored, original, cv::NORM_INF), 0);
+  EXPECT_THROW(map.At(75), Error);
+  EXPECT_THROW(map.Image(-1), Error);
+}
+
+TEST_F(MapTest, KeepsOtherImagesCloseToTheOriginal) {
+  const Lap lap = MakeLap("png", 2, ".png");
+  CreateMap(folder_ / "m.map", std::span(&lap, 1), options_, pool_);
+  const Map map = Map::Open(folder_ / "m.map");
+  EXPECT_EQ(map.Image(1).size(), cv::Size(kWidth, kHeight));
+  EXPECT_EQ(map.memory().Pattern(1), PatternOf(lap.frames[1].left));
+}
+
+TEST_F(MapTest, SamplesKeyFramesAtTheSpacing) {
+  const Lap lap = MakeLap("one", 21);
+  options_.spacing_m = 20;
+  CreateMap(folder_ / "m.map", std::span(&lap, 1), options_, pool_);
+  const Map map = Map::Open(folder_ / "m.map");
+  ASSERT_EQ(map.size(), 6);
+  EXPECT_EQ(map.At(1).frame, 4u);
+}
+
+// Appending in any steps, across full and partly filled blocks, ends in the map made at once.
+TEST_F(MapTest, GrowsByAppending) {
+  const std::vector<Lap> laps = {MakeLap("one", 60), MakeLap("two", 3), MakeLap("three", 1),
+                                 MakeLap("four", 70)};
+  CreateMap(folder_ / "m.map", std::span(laps).first(1), options_, pool_);
+  const Map before = Map::Open(folder_ / "m.map");
+  AddToMap(folder_ / "m.map", std::span(laps).subspan(1, 2), pool_);
+  AddToMap(folder_ / "m.map", std::span(laps).subspan(3), pool_);
+  ExpectHolds(Map::Open(folder_ / "m.map"), laps);
+  ExpectHolds(before, {laps[0]});  // an open reader keeps its own state
+}
+
+TEST_F(MapTest, RefusesBadLapsAndLeavesTheMapAlone) {
+  const std::vector<Lap> laps = {MakeLap("one", 3)};
+  const fs::path file = folder_ / "m.map";
+  CreateMap(file, laps, options_, pool_);
+  const std::string before = ReadFile(file);
+
+  EXPECT_THROW(AddToMap(file, laps, pool_), Error);  // the same name again
+  std::vector<Lap> other = {MakeLap("two", 3)};
+  other[0].camera.left.width = 640;
+  EXPECT_THROW(AddToMap(file, other, pool_), Error);
+  other = {MakeLap("three", 3)};
+  other[0].frames[2].left = folder_ / "missing.jpg";
+  EXPECT_THROW(AddToMap(file, other, pool_), Error);  // found half way through
+  other[0].frames[2].left.clear();
+  EXPECT_THROW(AddToMap(file, other, pool_), Error);
+  EXPECT_THROW(CreateMap(file, other, options_, pool_), Error);
+  EXPECT_THROW(CreateMap(file, {}, options_, pool_), Error);
+  ExpectHolds(Map::Open(file), laps);
+  EXPECT_EQ(ReadFile(file), before);
+}
+
+// A process killed while it makes a map leaves the old one, or none, under the map's name.
+TEST_F(MapTest, IsNeverSeenHalfWritten) {
+  const std::vector<Lap> old = {MakeLap("old", 2)}, fresh = {MakeLap("new", 1100)};
+  const fs::path file = folder_ / "m.map";
+  CreateMap(file, old, options_, pool_);
+  const pid_t child = fork();
+  if (child == 0) {
+    ThreadPool pool(1);
+    CreateMap(file, fresh, options_, pool, [](const Progress& p) {
+      if (p.done == 1090) _exit(7);  // after a commit of the blocks before it
+    });
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_EQ(WEXITSTATUS(status), 7);
+  ExpectHolds(Map::Open(file), old);
+}
+
+TEST_F(MapTest, TellsForeignAndDamagedFiles) {
+  const std::vector<Lap> laps = {MakeLap("one", 70)};
+  const fs::path file = folder_ / "m.map";
+  CreateMap(file, laps, options_, pool_);
+  const auto message = [](const fs::path& path) -> std::string {
+    try {
+      Map::Open(path);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "opened";
+  };
+  EXPECT_EQ(message(file), "opened");
+  EXPECT_NE(message(folder_ / "none.map").find("no such map"), std::string::npos);
+  EXPECT_NE(message(folder_).find("is no file"), std::string::npos);
+
+  AtomicWrite(folder_ / "empty.map", "");
+  EXPECT_NE(message(folder_ / "empty.map").find("is empty"), std::string::npos);
+  AtomicWrite(folder_ / "text.map", std::string(100000, 'x'));
+  EXPECT_NE(message(folder_ / "text.map").find("not a whole Recollect map"), std::string::npos);
+  const std::string whole = ReadFile(file);
+  AtomicWrite(folder_ / "short.map", whole.substr(0, whole.size() / 2));
+  EXPECT_NE(message(folder_ / "short.map").find("cut short"), std::string::npos);
+
+  StoreWriter writer(file, false);
+  writer.Put("description", std::as_bytes(std::span("{\"version\": 99}", 15)));
+  writer.Commit();
+  EXPECT_NE(message(file).find("format version 99"), std::string::npos);
+  writer.Put("description", std::as_bytes(std::span("{", 1)));
+  writer.Commit();
+  EXPECT_NE(message(file).find("description cannot be read"), std::string::npos);
+}
+
+TEST_F(MapTest, TellsMissingBlocksAndRecords) {
+  const std::vector<Lap> laps = {MakeLap("one", 70)};
+  const fs::path file = folder_ / "m.map";
+  CreateMap(file, laps, options_, pool_);
+  StoreWriter writer(file, false);
+  const std::vector<std::byte> junk(100);
+  writer.Put(Table::kKeyFrames, 3, junk);
+  writer.Commit();
+  const Map map = Map::Open(file);
+  EXPECT_THROW(map.At(3), Error);
+  EXPECT_NO_THROW(map.At(2));
+  writer.Put(Table::kPatterns, 1, junk);
+  writer.Commit();
+  EXPECT_THROW(Map::Open(file), Error);
+}
+
+}  // namespace
+}  // namespace recollect
