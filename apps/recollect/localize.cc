@@ -45,7 +45,7 @@ void Run(const Options& options) {
   const std::vector<Live> live = Gather(options);
   ThreadPool pool(options.common.threads);
   const Map map = Map::Open(options.map);
-  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
+  Localizer localizer(map, cnn::PoseNetwork::Load(options.model), pool);
   const ProgressSink progress = TerminalProgress();
 
   std::vector<double> times;
