@@ -3,14 +3,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <map>
-#include <optional>
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/image.h"
+#include "recollect/dataset/image_checks.h"
 #include "recollect/dataset/text_table.h"
+#include "recollect/dataset/trajectory_io.h"
 
 namespace recollect {
 namespace {
@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 
 using Projection = Eigen::Matrix<double, 3, 4>;
 using NumberedFiles = std::map<std::int64_t, fs::path>;
-
-constexpr double kSecondsPerFrame = 0.1;
 
 // The images of a folder by the number that is their name.
 NumberedFiles ListImages(const fs::path& folder) {
@@ -77,10 +75,9 @@ std::vector<double> ReadTimes(const fs::path& path) {
   std::vector<double> times;
   for (const TextTable::Row& row : table.rows()) {
     table.RequireFields(row, 1, "seconds");
-    times.push_back(table.Number(row, 0));
-    if (times.size() > 1 && times.back() <= times[times.size() - 2]) {
-      table.Fail(row, "time is not after the one before");
-    }
+    const double time = table.Number(row, 0);
+    if (!times.empty()) table.RequireAfter(row, times.back(), time);
+    times.push_back(time);
   }
   return times;
 }
@@ -90,10 +87,8 @@ std::vector<GpsFix> ReadGps(const fs::path& path) {
   std::vector<GpsFix> fixes;
   for (const TextTable::Row& row : table.RowsAfterHeader("time x y z quality")) {
     const std::array<double, 4> v = table.Numbers<4>(row);
+    if (!fixes.empty()) table.RequireAfter(row, fixes.back().time, v[0]);
     fixes.push_back({v[0], {v[1], v[2], v[3]}, table.Quality(row, 4)});
-    if (fixes.size() > 1 && v[0] < fixes[fixes.size() - 2].time) {
-      table.Fail(row, "time is before the one before");
-    }
   }
   return fixes;
 }
@@ -123,13 +118,6 @@ void SetCamera(const fs::path& calibration, int left, bool has_right, Lap& lap) 
   }
 }
 
-void RequireSize(const fs::path& path, const PinholeCamera& camera) {
-  const ImageInfo info = ReadImageInfo(path);
-  Require(info.width == camera.width && info.height == camera.height, path.string(),
-          fmt::format("{}x{} pixels where the lap's first image has {}x{}", info.width, info.height,
-                      camera.width, camera.height));
-}
-
 // Says which image is missing, where the numbers tell.
 std::string Missing(const NumberedFiles& images, std::size_t count) {
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i) {
@@ -145,21 +133,6 @@ bool LooksLikeKitti(const fs::path& folder) {
     if (fs::exists(folder / mark)) return true;
   }
   return false;
-}
-
-std::vector<SE3> ReadKittiPoses(const fs::path& path) {
-  const TextTable table(path);
-  std::vector<SE3> poses;
-  poses.reserve(table.rows().size());
-  for (const TextTable::Row& row : table.rows()) {
-    table.RequireFields(row, 12, "a 3x4 matrix");
-    const Projection T = ReadMatrix(table, row, 0);
-    const Eigen::Matrix3d R = T.leftCols<3>();
-    if (!IsRotation(R)) table.Fail(row, "the left 3x3 block is not a rotation");
-    poses.emplace_back(NearestRotation(R), T.col(3));
-  }
-  Require(!poses.empty(), path.string(), "holds no pose");
-  return poses;
 }
 
 Lap ReadKittiLap(const fs::path& folder) {
@@ -195,7 +168,7 @@ Lap ReadKittiLap(const fs::path& folder) {
   for (std::size_t i = 0; const auto& [number, path] : left_images) {
     RequireSize(path, lap.camera.left);
     Frame& frame = lap.frames[i];
-    frame.time = times.empty() ? kSecondsPerFrame * static_cast<double>(i) : times[i];
+    frame.time = times.empty() ? kKittiSecondsPerFrame * static_cast<double>(i) : times[i];
     frame.world_from_body = poses[i++];
     frame.left = path;
     by_number[number] = &frame;
@@ -213,11 +186,7 @@ Lap ReadKittiLap(const fs::path& folder) {
   }
   if (fs::exists(folder / "depth")) {
     for (const auto& [number, path] : ListImages(folder / "depth")) {
-      const ImageInfo info = ReadImageInfo(path);
-      Require(info.bits == 16 && info.channels == 1, path.string(),
-              fmt::format("depth has {} bits and {} channels where 16 and 1 belong", info.bits,
-                          info.channels));
-      DepthCamera(lap.camera.left, info.width, info.height, path.string());
+      RequireDepth(path, lap.camera.left);
       frame_of(number, path).depth = path;
     }
   }

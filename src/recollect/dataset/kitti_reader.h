@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "recollect/dataset/lap.h"
 
 namespace recollect {
+
+// The benchmark's 10 frames a second, for laps without times.
+inline constexpr double kKittiSecondsPerFrame = 0.1;
 
 // True where a folder bears the marks of a KITTI odometry sequence: poses.txt, calib.txt or
 // image_N.
@@ -24,9 +26,5 @@ bool LooksLikeKitti(const std::filesystem::path& folder);
 //   gps.csv            (addition) time,x,y,z,quality; see GpsFix
 // Throws Error, naming file and line, for the first thing that is missing or wrong.
 Lap ReadKittiLap(const std::filesystem::path& folder);
-
-// The poses of a file of 3x4 row-major matrices. Throws Error, naming file and line, for rows that
-// are no rigid motion (rounding up to 1e-3 is removed) and for a file without any.
-std::vector<SE3> ReadKittiPoses(const std::filesystem::path& path);
 
 }  // namespace recollect

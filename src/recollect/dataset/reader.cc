@@ -6,6 +6,9 @@
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/kitti_reader.h"
+#include "recollect/dataset/text_table.h"
+#include "recollect/dataset/trajectory_io.h"
+#include "recollect/dataset/tum_reader.h"
 #include "recollect/dataset/ufes_reader.h"
 
 namespace recollect {
@@ -21,6 +24,7 @@ constexpr std::array<std::pair<std::string_view, Format>, 4> kFormats = {{{"gues
 // The format whose marks the folder bears, kGuess where it bears none.
 Format FormatOf(const fs::path& folder) {
   if (LooksLikeKitti(folder)) return Format::kKitti;
+  if (LooksLikeTum(folder)) return Format::kTum;
   if (LooksLikeUfes(folder)) return Format::kUfes;
   return Format::kGuess;
 }
@@ -29,10 +33,43 @@ std::vector<Lap> ReadFolder(const fs::path& folder, Format format) {
   switch (format) {
     case Format::kKitti:
       return {ReadKittiLap(folder)};
+    case Format::kTum:
+      return {ReadTumLap(folder)};
     case Format::kUfes:
       return ReadUfesLaps(folder);
+    case Format::kGuess:
+      break;
+  }
+  return {};
+}
+
+// A lap of poses alone, from a file of one of the trajectory formats: told by its rows' length.
+Lap ReadTrajectoryFile(const fs::path& path, Format format) {
+  if (format == Format::kGuess) {
+    const TextTable table(path);
+    const std::size_t fields = table.rows().empty() ? 0 : table.rows().front().fields.size();
+    format = fields == 8 ? Format::kTum : fields == 12 ? Format::kKitti : Format::kGuess;
+  }
+  Lap lap;
+  lap.name = path.stem().string();
+  lap.folder = path.parent_path();
+  switch (format) {
+    case Format::kTum: {
+      const Trajectory trajectory = ReadTumTrajectory(path);
+      for (const auto& [time, pose] : trajectory.poses()) {
+        lap.frames.push_back({time, pose, {}, {}, {}});
+      }
+      return lap;
+    }
+    case Format::kKitti:
+      for (const SE3& pose : ReadKittiPoses(path)) {
+        const double time = kKittiSecondsPerFrame * static_cast<double>(lap.frames.size());
+        lap.frames.push_back({time, pose, {}, {}, {}});
+      }
+      return lap;
     default:
-      return {};
+      throw Error(path.string(), "is neither a folder nor a trajectory",
+                  "trajectories have 8 numbers a row (TUM) or 12 (KITTI)");
   }
 }
 
@@ -48,7 +85,7 @@ Format ParseFormat(std::string_view name) {
 
 std::vector<Lap> ReadLaps(const fs::path& folder, Format format) {
   Require(fs::exists(folder), folder.string(), "no such folder");
-  Require(fs::is_directory(folder), folder.string(), "is a file where a folder belongs");
+  if (!fs::is_directory(folder)) return {ReadTrajectoryFile(folder, format)};
   const auto wanted = [&](Format found) {
     return found != Format::kGuess && (format == Format::kGuess || format == found);
   };

@@ -81,6 +81,10 @@ int TextTable::Quality(const Row& row, std::size_t field) const {
   return static_cast<int>(quality);
 }
 
+void TextTable::RequireAfter(const Row& row, double before, double time) const {
+  if (time <= before) Fail(row, fmt::format("time {} is not after {}", time, before));
+}
+
 void TextTable::RequireFields(const Row& row, std::size_t count, std::string_view what) const {
   if (row.fields.size() != count) {
     Fail(row, fmt::format("{} fields where {} belong ({})", row.fields.size(), count, what));

@@ -44,6 +44,8 @@ class TextTable {
   // A satellite fix's quality: a whole number from 0 to 9.
   int Quality(const Row& row, std::size_t field) const;
 
+  // Throws Error unless `time`, of the row, is after `before`.
+  void RequireAfter(const Row& row, double before, double time) const;
   // Throws Error unless the row has `count` fields; `what` says what they should be.
   void RequireFields(const Row& row, std::size_t count, std::string_view what) const;
   [[noreturn]] void Fail(const Row& row, const std::string& what,

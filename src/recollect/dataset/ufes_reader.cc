@@ -61,9 +61,7 @@ void ReadPoses(const fs::path& path, Lap& lap) {
     frame.world_from_body = SE3(RotationFromRollPitchYaw(v[3], v[4], v[5]), {v[0], v[1], v[2]});
     frame.left = image(row.fields[7]);
     frame.right = image(row.fields[8]);
-    if (!lap.frames.empty() && frame.time <= lap.frames.back().time) {
-      table.Fail(row, "time is not after the one before");
-    }
+    if (!lap.frames.empty()) table.RequireAfter(row, lap.frames.back().time, frame.time);
     lap.frames.push_back(std::move(frame));
   }
   Require(!lap.frames.empty(), path.string(), "holds no pose");
@@ -73,11 +71,8 @@ void ReadGps(const fs::path& path, Lap& lap) {
   const TextTable table(path);
   for (const TextTable::Row& row : table.RowsAfterHeader("x y z heading valid quality timestamp")) {
     const std::array<double, 7> v = table.Numbers<7>(row);
-    GpsFix fix{v[6], {v[0], v[1], v[2]}, table.Quality(row, 5)};
-    if (!lap.gps.empty() && fix.time < lap.gps.back().time) {
-      table.Fail(row, "time is before the one before");
-    }
-    lap.gps.push_back(fix);
+    if (!lap.gps.empty()) table.RequireAfter(row, lap.gps.back().time, v[6]);
+    lap.gps.push_back({v[6], {v[0], v[1], v[2]}, table.Quality(row, 5)});
   }
 }
 
