@@ -1,5 +1,6 @@
 #include "recollect/dataset/text_table.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -35,6 +36,15 @@ std::vector<std::string_view> Fields(std::string_view line, char separator) {
   return fields;
 }
 
+// The beginning of a field, fit for a message of one line.
+std::string Shown(std::string_view field) {
+  constexpr std::size_t kLength = 40;
+  std::string shown(field.substr(0, kLength));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return c < ' '; }, '?');
+  return field.size() > kLength ? shown + "..." : shown;
+}
+
 }  // namespace
 
 TextTable::TextTable(const std::filesystem::path& path, char separator)
@@ -68,8 +78,9 @@ double TextTable::Number(const Row& row, std::size_t field) const {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [stop, code] = std::from_chars(text.data(), end, value);
-  if (code != std::errc() || stop != end) Fail(row, fmt::format("'{}' is not a number", text));
-  if (!std::isfinite(value)) Fail(row, fmt::format("'{}' is not a finite number", text));
+  if (code != std::errc() || stop != end)
+    Fail(row, fmt::format("'{}' is not a number", Shown(text)));
+  if (!std::isfinite(value)) Fail(row, fmt::format("'{}' is not a finite number", Shown(text)));
   return value;
 }
 
