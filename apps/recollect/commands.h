@@ -5,6 +5,8 @@
 // One function a sub-command, each in the file of its name.
 namespace recollect::app {
 
+void AddDataset(CLI::App& app);
+void AddExperiment(CLI::App& app);
 void AddMap(CLI::App& app);
 void AddPlaces(CLI::App& app);
 

@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", RECOLLECT_VERSION);
   using namespace recollect::app;
+  AddDataset(app);
+  AddExperiment(app);
   AddMap(app);
   AddPlaces(app);
   try {

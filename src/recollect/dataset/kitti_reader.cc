@@ -126,6 +126,52 @@ std::string Missing(const NumberedFiles& images, std::size_t count) {
   return "";
 }
 
+// Frames with pose, time and left image.
+std::vector<Frame> ReadFrames(const fs::path& folder, const fs::path& left_folder,
+                              const NumberedFiles& left_images) {
+  const std::vector<SE3> poses = ReadKittiPoses(folder / "poses.txt");
+  Require(left_images.size() == poses.size(), left_folder.string(),
+          fmt::format("{} images for the {} poses of poses.txt{}", left_images.size(), poses.size(),
+                      Missing(left_images, poses.size())));
+  const fs::path times_file = folder / "times.txt";
+  std::vector<double> times;
+  if (fs::exists(times_file)) {
+    times = ReadTimes(times_file);
+    Require(times.size() == poses.size(), times_file.string(),
+            fmt::format("{} times for the {} poses of poses.txt", times.size(), poses.size()));
+  }
+  std::vector<Frame> frames(poses.size());
+  for (std::size_t i = 0; const auto& [number, path] : left_images) {
+    frames[i].time = times.empty() ? kKittiSecondsPerFrame * static_cast<double>(i) : times[i];
+    frames[i].world_from_body = poses[i];
+    frames[i].left = path;
+    ++i;
+  }
+  return frames;
+}
+
+// Gives each image of a folder to the frame whose left image has its number.
+void Attach(const fs::path& folder, const NumberedFiles& left_images, fs::path Frame::*image,
+            std::vector<Frame>& frames) {
+  if (!fs::exists(folder)) return;
+  auto left = left_images.begin();
+  std::size_t i = 0;
+  for (const auto& [number, path] : ListImages(folder)) {
+    for (; left != left_images.end() && left->first < number; ++left) ++i;
+    Require(left != left_images.end() && left->first == number, path.string(),
+            "no left image has that number");
+    frames[i].*image = path;
+  }
+}
+
+void CheckImages(const Lap& lap) {
+  for (const Frame& frame : lap.frames) {
+    RequireSize(frame.left, lap.camera.left);
+    if (!frame.right.empty()) RequireSize(frame.right, lap.camera.left);
+    if (!frame.depth.empty()) RequireDepth(frame.depth, lap.camera.left);
+  }
+}
+
 }  // namespace
 
 bool LooksLikeKitti(const fs::path& folder) {
@@ -147,49 +193,14 @@ Lap ReadKittiLap(const fs::path& folder) {
   const NumberedFiles left_images = ListImages(left_folder);
   Require(!left_images.empty(), left_folder.string(), "holds no image",
           "images are named NUMBER.png or NUMBER.jpg");
-  const bool has_right = fs::exists(right_folder);
-  SetCamera(folder / "calib.txt", left, has_right, lap);
+  SetCamera(folder / "calib.txt", left, fs::exists(right_folder), lap);
   const ImageInfo first = ReadImageInfo(left_images.begin()->second);
   lap.camera.left.width = first.width;
   lap.camera.left.height = first.height;
-
-  const std::vector<SE3> poses = ReadKittiPoses(folder / "poses.txt");
-  Require(left_images.size() == poses.size(), left_folder.string(),
-          fmt::format("{} images for the {} poses of poses.txt{}", left_images.size(), poses.size(),
-                      Missing(left_images, poses.size())));
-  std::vector<double> times;
-  if (fs::exists(folder / "times.txt")) {
-    times = ReadTimes(folder / "times.txt");
-    Require(times.size() == poses.size(), (folder / "times.txt").string(),
-            fmt::format("{} times for the {} poses of poses.txt", times.size(), poses.size()));
-  }
-  std::map<std::int64_t, Frame*> by_number;
-  lap.frames.resize(poses.size());
-  for (std::size_t i = 0; const auto& [number, path] : left_images) {
-    RequireSize(path, lap.camera.left);
-    Frame& frame = lap.frames[i];
-    frame.time = times.empty() ? kKittiSecondsPerFrame * static_cast<double>(i) : times[i];
-    frame.world_from_body = poses[i++];
-    frame.left = path;
-    by_number[number] = &frame;
-  }
-  const auto frame_of = [&](std::int64_t number, const fs::path& path) -> Frame& {
-    Require(by_number.contains(number), path.string(),
-            fmt::format("no image of that number in image_{}", left));
-    return *by_number[number];
-  };
-  if (has_right) {
-    for (const auto& [number, path] : ListImages(right_folder)) {
-      RequireSize(path, lap.camera.left);
-      frame_of(number, path).right = path;
-    }
-  }
-  if (fs::exists(folder / "depth")) {
-    for (const auto& [number, path] : ListImages(folder / "depth")) {
-      RequireDepth(path, lap.camera.left);
-      frame_of(number, path).depth = path;
-    }
-  }
+  lap.frames = ReadFrames(folder, left_folder, left_images);
+  Attach(right_folder, left_images, &Frame::right, lap.frames);
+  Attach(folder / "depth", left_images, &Frame::depth, lap.frames);
+  CheckImages(lap);
   if (fs::exists(folder / "gps.csv")) lap.gps = ReadGps(folder / "gps.csv");
   return lap;
 }

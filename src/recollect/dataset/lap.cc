@@ -25,6 +25,16 @@ Lap Subset(const Lap& lap, const std::vector<std::size_t>& frames) {
   return subset;
 }
 
+double PathLength(const Lap& lap) {
+  double length = 0;
+  for (std::size_t i = 1; i < lap.frames.size(); ++i) {
+    length += (lap.frames[i].world_from_body.translation() -
+               lap.frames[i - 1].world_from_body.translation())
+                  .norm();
+  }
+  return length;
+}
+
 const GpsFix* NearestFix(const Lap& lap, double time) {
   if (lap.gps.empty()) return nullptr;
   const auto after =

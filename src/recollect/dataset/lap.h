@@ -58,6 +58,9 @@ double HeadingDifference(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 // The lap with only `frames` of it, in that order; the satellite fixes stay.
 Lap Subset(const Lap& lap, const std::vector<std::size_t>& frames);
 
+// Sum of the distances from frame to frame, metres.
+double PathLength(const Lap& lap);
+
 // The satellite fix nearest in time to `time`, nullptr where the lap has none at all. It may be of
 // quality 0, and far off in time where reception was lost.
 const GpsFix* NearestFix(const Lap& lap, double time);

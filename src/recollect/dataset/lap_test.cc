@@ -49,6 +49,12 @@ TEST(Lap, SubsetKeepsTheFramesAskedFor) {
   EXPECT_EQ(subset.gps.size(), 1u);
 }
 
+TEST(Lap, HasALength) {
+  Lap lap = CarLap();
+  lap.frames[1].world_from_body = SE3(Eigen::Matrix3d::Identity(), {3, 4, 0});
+  EXPECT_DOUBLE_EQ(PathLength(lap), 5);
+}
+
 TEST(NearestFix, IsNearestInTime) {
   Lap lap;
   EXPECT_EQ(NearestFix(lap, 0), nullptr);

@@ -152,7 +152,7 @@ std::vector<Case> Cases() {
       {"RightImageOfAnotherSize", "kitti", Image("image_3/000001.png", 8, 6),
        "DIR/image_3/000001.png: 8x6 pixels where the lap's first image has 16x12"},
       {"RightImageOfNoFrame", "kitti", Image("image_3/000007.png", 16, 12),
-       "DIR/image_3/000007.png: no image of that number in image_2"},
+       "DIR/image_3/000007.png: no left image has that number"},
       {"TruncatedPng", "kitti", Cut("image_2/000001.png", 20),
        "DIR/image_2/000001.png: is not an image that can be decoded"},
       {"EmptyPng", "kitti", Write("image_2/000001.png", ""), "DIR/image_2/000001.png: is empty"},
@@ -165,7 +165,7 @@ std::vector<Case> Cases() {
       {"DepthOfNoWholeFraction", "kitti", Image("depth/000001.png", 10, 6, CV_16UC1),
        "DIR/depth/000001.png: 10x6 is no whole fraction of the 16x12 image"},
       {"DepthOfNoFrame", "kitti", Image("depth/000003.png", 8, 6, CV_16UC1),
-       "DIR/depth/000003.png: no image of that number in image_2"},
+       "DIR/depth/000003.png: no left image has that number"},
 
       // KITTI: gps.csv.
       {"GpsWithoutHeader", "kitti", Write("gps.csv", "0,0,0,0,4\n"),
