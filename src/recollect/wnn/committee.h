@@ -19,6 +19,7 @@ struct Recollection {
   int winner = -1;        // the label with most votes, the lowest of equals; -1: nothing is stored
   double confidence = 0;  // (votes of the first - votes of the second) / votes of the first
   int neurons_read = 0;  // how many neurons were asked; fewer than all where a search stopped early
+  std::int64_t words_read = 0;  // 64-bit words of memory that a single image's search went through
   std::vector<LabelVotes> histogram;  // labels that got votes, most votes first, then lowest label
   std::vector<Answer> answers;        // by neuron; kNoAnswer where it was not asked
 };

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "recollect/wnn/answer.h"
+
+namespace recollect::wnn {
+
+// What a scan reads: the key frames of one block (see BlockView) that it may look at.
+struct ScanBlock {
+  const std::uint64_t* low = nullptr;   // bits of synapses 0..63, [neuron][frame]
+  const std::uint64_t* high = nullptr;  // bits of synapses 64..127, [neuron][frame]
+  int capacity = 0;                     // words a row, a multiple of 8
+  int first_entry = 0;                  // number of the block's first key frame
+  std::uint64_t allowed = 0;            // bit i: frame i may be looked at
+};
+
+// What a scan looks for, and the nearest it has found so far, by neuron.
+struct ScanQuery {
+  const std::uint64_t* pattern = nullptr;  // neurons x kWords
+  TieBreak ties;
+  Answer* answers = nullptr;
+};
+
+// Inner loops of the search for one instruction set. All of them give the same answers.
+struct Kernel {
+  std::string_view name;
+  // Improves the answers of neurons [begin, end) by the block's allowed frames. Reads the second
+  // half of a pattern only where the first half does not rule it out; returns the number of 64-bit
+  // words read.
+  std::int64_t (*scan)(const ScanBlock& block, const ScanQuery& query, int begin, int end);
+  // The same for `count` queries at a time, which share what is read from memory.
+  void (*scan_batch)(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
+                     int end);
+};
+
+// Each is null where the compiler's target lacks the instruction set.
+extern const Kernel kPlainKernel;
+const Kernel* Avx2Kernel();
+const Kernel* Avx512Kernel();
+const Kernel* NeonKernel();
+
+// Those that this machine runs, the fastest first; the plain one is always among them.
+std::span<const Kernel* const> Kernels();
+
+}  // namespace recollect::wnn

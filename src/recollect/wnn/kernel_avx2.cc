@@ -1,0 +1,94 @@
+// The search with AVX2: four frames an instruction, bits counted by table (Mula's method).
+#if defined(__x86_64__)
+#include <immintrin.h>
+
+#include <bit>
+
+#include "recollect/wnn/kernel_common.h"
+
+#define AVX2 __attribute__((target("avx2,popcnt,bmi")))
+
+namespace recollect::wnn {
+namespace {
+
+constexpr int kLane = 4;  // frames a register
+
+// Bits set in each byte.
+AVX2 inline __m256i ByteCounts(__m256i words) {
+  const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,  //
+                                         0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
+  const __m256i nibble = _mm256_set1_epi8(15);
+  const __m256i low = _mm256_and_si256(words, nibble);
+  const __m256i high = _mm256_and_si256(_mm256_srli_epi16(words, 4), nibble);
+  return _mm256_add_epi8(_mm256_shuffle_epi8(table, low), _mm256_shuffle_epi8(table, high));
+}
+
+AVX2 inline __m256i Different(const std::uint64_t* words, __m256i query) {
+  const __m256i row = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words));
+  return ByteCounts(_mm256_xor_si256(row, query));
+}
+
+// One bit a frame of four: distance <= limit.
+AVX2 inline unsigned AtMost(__m256i distances, __m256i limit) {
+  const __m256i above = _mm256_cmpgt_epi64(distances, limit);
+  return ~static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(above))) & 15;
+}
+
+AVX2 inline __m256i Sum(__m256i bytes) { return _mm256_sad_epu8(bytes, _mm256_setzero_si256()); }
+
+AVX2 inline __m256i Limit(Answer best) { return _mm256_set1_epi64x(AnswerDistance(best)); }
+
+AVX2 Answer TakeHits(unsigned hits, __m256i distances, const TieBreak& ties, int neuron,
+                     int first_entry, Answer best) {
+  alignas(32) std::uint64_t distance[kLane];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(distance), distances);
+  for (; hits != 0; hits &= hits - 1) {
+    const int i = std::countr_zero(hits);
+    best = Better(best, ties, neuron, static_cast<int>(distance[i]), first_entry + i);
+  }
+  return best;
+}
+
+AVX2 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
+  std::int64_t quarters = 0;
+  const int lanes = (64 - std::countl_zero(block.allowed | 1) + kLane - 1) / kLane;
+  for (int n = begin; n < end; ++n) {
+    const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    const __m256i q0 = _mm256_set1_epi64x(static_cast<long long>(query.pattern[n * kWords]));
+    const __m256i q1 = _mm256_set1_epi64x(static_cast<long long>(query.pattern[n * kWords + 1]));
+    Answer best = query.answers[n];
+    __m256i limit = Limit(best);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto allowed = static_cast<unsigned>(block.allowed >> (kLane * lane)) & 15;
+      if (allowed == 0) continue;
+      ++quarters;
+      const __m256i half = Different(high + kLane * lane, q1);
+      if ((AtMost(Sum(half), limit) & allowed) == 0) continue;
+      ++quarters;
+      const __m256i distances = Sum(_mm256_add_epi8(half, Different(low + kLane * lane, q0)));
+      const unsigned hits = AtMost(distances, limit) & allowed;
+      if (hits == 0) continue;
+      best = TakeHits(hits, distances, query.ties, n, block.first_entry + kLane * lane, best);
+      limit = Limit(best);
+    }
+    query.answers[n] = best;
+  }
+  return quarters * kLane;
+}
+
+AVX2 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
+                    int end) {
+  for (int n = begin; n < end; ++n) {
+    for (int q = 0; q < count; ++q) Scan(block, queries[q], n, n + 1);
+  }
+}
+
+constexpr Kernel kKernel = {"avx2", Scan, ScanBatch};
+
+}  // namespace
+
+const Kernel* Avx2Kernel() { return &kKernel; }
+
+}  // namespace recollect::wnn
+#endif

@@ -1,0 +1,108 @@
+// The search with AVX-512 VPOPCNTDQ: eight frames an instruction.
+#if defined(__x86_64__)
+// g++ 12 takes the undefined registers of its own intrinsics for a mistake of ours.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#include <immintrin.h>
+
+#include <bit>
+
+#include "recollect/wnn/kernel_common.h"
+
+#define AVX512 __attribute__((target("avx512f,avx512vpopcntdq,popcnt,bmi")))
+
+namespace recollect::wnn {
+namespace {
+
+constexpr int kLane = 8;  // frames a register
+
+AVX512 inline __m512i Load(const std::uint64_t* words) { return _mm512_loadu_si512(words); }
+
+AVX512 inline __m512i Different(__m512i words, __m512i query) {
+  return _mm512_popcnt_epi64(_mm512_xor_si512(words, query));
+}
+
+AVX512 inline __m512i Limit(Answer best) { return _mm512_set1_epi64(AnswerDistance(best)); }
+
+// Hits are rare: each improves the answer or ties with it.
+AVX512 Answer TakeHits(__mmask8 hits, __m512i distances, const TieBreak& ties, int neuron,
+                       int first_entry, Answer best) {
+  alignas(64) std::uint64_t distance[kLane];
+  _mm512_store_si512(distance, distances);
+  for (unsigned left = hits; left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
+    best = Better(best, ties, neuron, static_cast<int>(distance[i]), first_entry + i);
+  }
+  return best;
+}
+
+// The Gaussian half first: it tells places apart better. Whatever is further than the best by
+// that half alone needs no second look.
+AVX512 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
+  std::int64_t lines = 0;
+  const int lanes = (64 - std::countl_zero(block.allowed | 1) + kLane - 1) / kLane;
+  for (int n = begin; n < end; ++n) {
+    const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    const __m512i q0 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords]));
+    const __m512i q1 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords + 1]));
+    Answer best = query.answers[n];
+    __m512i limit = Limit(best);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto allowed = static_cast<__mmask8>(block.allowed >> (kLane * lane));
+      if (allowed == 0) continue;
+      ++lines;
+      const __m512i half = Different(Load(high + kLane * lane), q1);
+      if (_mm512_mask_cmple_epu64_mask(allowed, half, limit) == 0) continue;
+      ++lines;
+      const __m512i distances = _mm512_add_epi64(half, Different(Load(low + kLane * lane), q0));
+      const __mmask8 hits = _mm512_mask_cmple_epu64_mask(allowed, distances, limit);
+      if (hits == 0) continue;
+      best = TakeHits(hits, distances, query.ties, n, block.first_entry + kLane * lane, best);
+      limit = Limit(best);
+    }
+    query.answers[n] = best;
+  }
+  return lines * kLane;
+}
+
+// One row of a full block stays in registers while all queries pass over it.
+AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
+                      int end) {
+  if (block.allowed != ~std::uint64_t{0}) {
+    for (int n = begin; n < end; ++n) {
+      for (int q = 0; q < count; ++q) Scan(block, queries[q], n, n + 1);
+    }
+    return;
+  }
+  constexpr int kLanes = 64 / kLane;
+  for (int n = begin; n < end; ++n) {
+    const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    __m512i rows0[kLanes], rows1[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      rows0[lane] = Load(low + kLane * lane);
+      rows1[lane] = Load(high + kLane * lane);
+    }
+    for (int q = 0; q < count; ++q) {
+      const ScanQuery& query = queries[q];
+      const __m512i q0 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords]));
+      const __m512i q1 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords + 1]));
+      __m512i least = _mm512_set1_epi64(2 * kSynapses);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        least = _mm512_min_epu64(
+            least, _mm512_add_epi64(Different(rows0[lane], q0), Different(rows1[lane], q1)));
+      }
+      const __m512i limit = Limit(query.answers[n]);
+      if (_mm512_cmple_epu64_mask(least, limit) != 0) Scan(block, query, n, n + 1);
+    }
+  }
+}
+
+constexpr Kernel kKernel = {"avx512", Scan, ScanBatch};
+
+}  // namespace
+
+const Kernel* Avx512Kernel() { return &kKernel; }
+
+}  // namespace recollect::wnn
+#endif

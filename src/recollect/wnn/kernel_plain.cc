@@ -1,0 +1,39 @@
+// The search in plain C++: what the other kernels are tested against.
+#include <bit>
+
+#include "recollect/wnn/kernel_common.h"
+
+namespace recollect::wnn {
+namespace {
+
+std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
+  std::int64_t read = 0;
+  for (int n = begin; n < end; ++n) {
+    const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* q = query.pattern + std::ptrdiff_t{n} * kWords;
+    Answer best = query.answers[n];
+    for (std::uint64_t left = block.allowed; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      const int distance = std::popcount(low[i] ^ q[0]) + std::popcount(high[i] ^ q[1]);
+      if (distance <= AnswerDistance(best)) {
+        best = Better(best, query.ties, n, distance, block.first_entry + i);
+      }
+      read += kWords;
+    }
+    query.answers[n] = best;
+  }
+  return read;
+}
+
+void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int begin, int end) {
+  for (int n = begin; n < end; ++n) {
+    for (int q = 0; q < count; ++q) Scan(block, queries[q], n, n + 1);
+  }
+}
+
+}  // namespace
+
+const Kernel kPlainKernel = {"plain", Scan, ScanBatch};
+
+}  // namespace recollect::wnn

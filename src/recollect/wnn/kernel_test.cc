@@ -1,0 +1,132 @@
+// Every kernel against the plain one: the same answers, to the bit, on random and on nasty input.
+#include "recollect/wnn/kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <string>
+
+#include "recollect/wnn/test_patterns.h"
+
+namespace recollect::wnn {
+namespace {
+
+using Words = std::vector<std::uint64_t>;
+
+// What words of memory and query look like.
+enum class Content { kRandom, kFewBits, kAllEqual, kNearQuery, kExtremes };
+
+Words Fill(std::size_t count, Content content, std::uint64_t seed) {
+  Words words(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t bits = SubSeed(seed, i);
+    switch (content) {
+      case Content::kRandom:
+        words[i] = bits;
+        break;
+      case Content::kFewBits:
+        words[i] = bits & 0x8000000000000001;
+        break;  // ties everywhere
+      case Content::kAllEqual:
+        words[i] = 0x123456789abcdef0;
+        break;
+      case Content::kNearQuery:
+        words[i] = 0x5555555555555555 ^ (std::uint64_t{1} << (bits % 64));
+        break;
+      case Content::kExtremes:
+        words[i] = bits % 2 ? ~std::uint64_t{0} : 0;
+        break;
+    }
+  }
+  return words;
+}
+
+struct Case {
+  int neurons, capacity, queries, begin, end;
+  std::uint64_t allowed;
+  Content content;
+};
+
+// Two blocks, so that the second meets answers of the first. Returns the distances computed.
+std::int64_t ExpectSame(const Kernel& kernel, const Case& c, std::uint64_t seed) {
+  const auto row = static_cast<std::size_t>(c.neurons) * static_cast<std::size_t>(c.capacity);
+  const Words words = Fill(4 * row, c.content, seed);
+  const auto words_of_query = static_cast<std::size_t>(c.neurons) * kWords;
+  const Words patterns =
+      Fill(words_of_query * static_cast<std::size_t>(c.queries), c.content, ~seed);
+  const auto scan = [&](const Kernel& k, bool batch) {
+    std::vector<Answer> answers(static_cast<std::size_t>(c.neurons * c.queries), kNoAnswer);
+    std::vector<ScanQuery> queries;
+    for (int q = 0; q < c.queries; ++q) {
+      const std::uint64_t* pattern = &patterns[words_of_query * static_cast<std::size_t>(q)];
+      queries.push_back({pattern, TieBreak(seed, {pattern, words_of_query}),
+                         &answers[static_cast<std::size_t>(c.neurons * q)]});
+    }
+    for (int b = 0; b < 2; ++b) {
+      const std::uint64_t* low = words.data() + 2 * b * static_cast<std::ptrdiff_t>(row);
+      const ScanBlock block = {low, low + row, c.capacity, 1000 * b, c.allowed};
+      if (batch) {
+        k.scan_batch(block, queries.data(), c.queries, c.begin, c.end);
+      } else {
+        for (const ScanQuery& query : queries) k.scan(block, query, c.begin, c.end);
+      }
+    }
+    return answers;
+  };
+  const auto expected = scan(kPlainKernel, false);
+  EXPECT_EQ(scan(kernel, false), expected) << kernel.name << " seed " << seed;
+  EXPECT_EQ(scan(kernel, true), expected) << kernel.name << " batch, seed " << seed;
+  return std::int64_t{2} * 2 * c.queries * (c.end - c.begin) * std::popcount(c.allowed);
+}
+
+TEST(Kernel, EveryOneAgreesWithThePlainOneOnAllTails) {
+  for (const Kernel* kernel : Kernels()) {
+    SCOPED_TRACE(std::string(kernel->name));
+    std::uint64_t seed = 0;
+    for (const Content content : {Content::kRandom, Content::kFewBits, Content::kAllEqual,
+                                  Content::kNearQuery, Content::kExtremes}) {
+      for (const int capacity : {8, 16, 24, 56, 64}) {
+        for (int frames = 1; frames <= capacity; ++frames) {
+          const std::uint64_t first = ~std::uint64_t{0} >> (64 - frames);
+          ++seed;
+          ExpectSame(*kernel, {5, capacity, 2, 1, 5, first, content}, seed);
+          ExpectSame(*kernel, {3, capacity, 1, 0, 3, first & Scramble(seed), content}, seed);
+        }
+      }
+      for (int queries = 1; queries <= 17; ++queries) {
+        ExpectSame(*kernel, {4, 64, queries, 0, 4, ~std::uint64_t{0}, content}, seed);
+      }
+    }
+  }
+}
+
+TEST(Kernel, EveryOneAgreesOverAHundredMillionDistances) {
+  for (const Kernel* kernel : Kernels()) {
+    SCOPED_TRACE(std::string(kernel->name));
+    std::int64_t distances = 0;
+    for (std::uint64_t seed = 0; distances < 100'000'000; ++seed) {
+      const Content content = seed % 4 == 3 ? Content::kFewBits : Content::kRandom;
+      const int neurons = 1000, queries = 1 + static_cast<int>(seed % 16);
+      distances +=
+          ExpectSame(*kernel, {neurons, 64, queries, 0, neurons, ~std::uint64_t{0}, content}, seed);
+      if (HasFailure()) break;
+    }
+  }
+}
+
+TEST(Kernel, SkipsHalfOfThePatternsOnlyWhereTheOtherHalfRulesThemOut) {
+  const Words words = Fill(2 * 64, Content::kRandom, 1);
+  const Words pattern = {words[3], words[64 + 3]};  // frame 3 itself
+  for (const Kernel* kernel : Kernels()) {
+    std::vector<Answer> answer = {MakeAnswer(1, 0, 99)};
+    const ScanBlock block = {words.data(), words.data() + 64, 64, 0, ~std::uint64_t{0}};
+    const std::int64_t read =
+        kernel->scan(block, {pattern.data(), TieBreak(1, pattern), answer.data()}, 0, 1);
+    EXPECT_EQ(AnswerEntry(answer[0]), 3) << kernel->name;
+    EXPECT_EQ(AnswerDistance(answer[0]), 0);
+    EXPECT_LE(read, kernel == &kPlainKernel ? 128 : 64 + 8);
+  }
+}
+
+}  // namespace
+}  // namespace recollect::wnn

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace recollect::wnn {
+
+// Counts the committee's votes one neuron at a time and says when enough of them are in. What is
+// said of chances needs the neurons to come in random order (Synapses numbers them so); what is
+// said to be certain needs nothing.
+class Tally {
+ public:
+  // labels: votes are for 0 .. labels - 1. neurons: votes that there are in all. error_bound: the
+  // chance, over the order of neurons, that Confident() ever holds of a label that will not win.
+  Tally(int labels, int neurons, double error_bound);
+
+  void Add(int label);
+
+  int read() const { return read_; }
+  // The label with most votes so far, of equals the lowest; -1 before the first vote.
+  int leader() const { return leader_; }
+  int votes(int label) const { return votes_[static_cast<std::size_t>(label)]; }
+
+  // The leader wins whatever the votes still to come.
+  bool Certain() const;
+  // The leader wins, but for a chance of at most error_bound. See docs/search.md, "Anytime".
+  bool Confident() const;
+
+ private:
+  void Nominate();
+
+  int neurons_;
+  double error_bound_;
+  std::vector<int> votes_;  // by label
+  int read_ = 0;
+  int leader_ = -1;
+  int second_ = 0;  // votes of the best label but the leader
+
+  // The leader's present term: how many votes it and its best rival got since it took the lead.
+  int terms_ = 0;
+  int for_leader_ = 0, for_rival_ = 0;
+  std::vector<int> term_of_, votes_in_term_;  // by label; the count holds if term_of_ is terms_
+};
+
+// Evidence, as a betting score, that a vote for a or b goes to a more often than not: a fair bet
+// against "a gets at most half of them" has multiplied its stake by exp of this after `a` votes for
+// the one and `b` for the other. Natural logarithm.
+double LogEvidence(int a, int b);
+
+}  // namespace recollect::wnn
