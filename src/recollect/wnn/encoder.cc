@@ -8,6 +8,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
+#include "recollect/wnn/kernel.h"
 
 namespace recollect::wnn {
 namespace {
@@ -93,21 +94,6 @@ struct Encoder::State {
       }
     });
   }
-
-  // The Minchinton cells of one neuron.
-  void Cells(int neuron, std::uint64_t* words) const {
-    const std::int32_t* offset = &offsets[static_cast<std::size_t>(neuron) * kSynapses];
-    std::int32_t value[kSynapses + 1];
-    for (int i = 0; i < kSynapses; ++i) value[i] = values[static_cast<std::size_t>(offset[i])];
-    value[kSynapses] = value[0];
-    for (int w = 0; w < kWords; ++w) {
-      std::uint64_t word = 0;
-      for (int i = 0; i < 64; ++i) {
-        word |= std::uint64_t{value[64 * w + i] < value[64 * w + i + 1]} << i;
-      }
-      words[w] = word;
-    }
-  }
 };
 
 Encoder::Encoder(const NetworkOptions& options, int image_width, int image_height, ThreadPool& pool)
@@ -136,10 +122,10 @@ void Encoder::Encode(const ImageView& image, std::span<std::uint64_t> pattern, P
                      cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
     state.CodeRows(state.blurred, state.values.data() + state.values.size() / 2);
   }
+  const Kernel& kernel = *Kernels().front();
   state.pool.For(state.synapses.neurons(), 256, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t n = begin; n < end; ++n) {
-      state.Cells(static_cast<int>(n), &pattern[static_cast<std::size_t>(n) * kWords]);
-    }
+    kernel.cells(state.values.data(), state.offsets.data(), static_cast<int>(begin),
+                 static_cast<int>(end), pattern.data());
   });
 }
 

@@ -24,9 +24,13 @@ struct ScanQuery {
   Answer* answers = nullptr;
 };
 
-// Inner loops of the search for one instruction set. All of them give the same answers.
+// The inner loops for one instruction set. All of them give the same results.
 struct Kernel {
   std::string_view name;
+  // The Minchinton cells of neurons [begin, end): pattern bits from the values under the synapses.
+  // offsets: where in `values` each synapse looks, neurons x kSynapses. pattern: neurons x kWords.
+  void (*cells)(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
+                std::uint64_t* pattern);
   // Improves the answers of neurons [begin, end) by the block's allowed frames. Reads the second
   // half of a pattern only where the first half does not rule it out; returns the number of 64-bit
   // words read.

@@ -38,6 +38,30 @@ AVX2 inline __m256i Sum(__m256i bytes) { return _mm256_sad_epu8(bytes, _mm256_se
 
 AVX2 inline __m256i Limit(Answer best) { return _mm256_set1_epi64x(AnswerDistance(best)); }
 
+AVX2 void Cells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
+                std::uint64_t* pattern) {
+  constexpr int kGathers = kSynapses / 8;
+  const __m256i rotate = _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0);
+  for (int n = begin; n < end; ++n) {
+    const std::int32_t* offset = offsets + std::ptrdiff_t{n} * kSynapses;
+    __m256i value[kGathers + 1];
+    for (int i = 0; i < kGathers; ++i) {
+      const auto* at = reinterpret_cast<const __m256i*>(offset + 8 * i);
+      value[i] = _mm256_i32gather_epi32(values, _mm256_loadu_si256(at), 4);
+    }
+    value[kGathers] = value[0];
+    std::uint64_t words[kWords] = {};
+    for (int i = 0; i < kGathers; ++i) {
+      const __m256i next =
+          _mm256_permutevar8x32_epi32(_mm256_blend_epi32(value[i], value[i + 1], 1), rotate);
+      const __m256i below = _mm256_cmpgt_epi32(next, value[i]);
+      const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(below)));
+      words[i / 8] |= std::uint64_t{bits} << (8 * (i % 8));
+    }
+    for (int w = 0; w < kWords; ++w) pattern[std::ptrdiff_t{n} * kWords + w] = words[w];
+  }
+}
+
 AVX2 Answer TakeHits(unsigned hits, __m256i distances, const TieBreak& ties, int neuron,
                      int first_entry, Answer best) {
   alignas(32) std::uint64_t distance[kLane];
@@ -84,7 +108,7 @@ AVX2 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count,
   }
 }
 
-constexpr Kernel kKernel = {"avx2", Scan, ScanBatch};
+constexpr Kernel kKernel = {"avx2", Cells, Scan, ScanBatch};
 
 }  // namespace
 

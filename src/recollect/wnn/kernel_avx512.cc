@@ -23,6 +23,25 @@ AVX512 inline __m512i Different(__m512i words, __m512i query) {
 
 AVX512 inline __m512i Limit(Answer best) { return _mm512_set1_epi64(AnswerDistance(best)); }
 
+AVX512 void Cells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
+                  std::uint64_t* pattern) {
+  constexpr int kGathers = kSynapses / 16;
+  for (int n = begin; n < end; ++n) {
+    const std::int32_t* offset = offsets + std::ptrdiff_t{n} * kSynapses;
+    __m512i value[kGathers + 1];
+    for (int i = 0; i < kGathers; ++i) {
+      value[i] = _mm512_i32gather_epi32(_mm512_loadu_si512(offset + 16 * i), values, 4);
+    }
+    value[kGathers] = value[0];
+    std::uint64_t words[kWords] = {};
+    for (int i = 0; i < kGathers; ++i) {
+      const __m512i next = _mm512_alignr_epi32(value[i + 1], value[i], 1);
+      words[i / 4] |= std::uint64_t{_mm512_cmplt_epi32_mask(value[i], next)} << (16 * (i % 4));
+    }
+    for (int w = 0; w < kWords; ++w) pattern[std::ptrdiff_t{n} * kWords + w] = words[w];
+  }
+}
+
 // Hits are rare: each improves the answer or ties with it.
 AVX512 Answer TakeHits(__mmask8 hits, __m512i distances, const TieBreak& ties, int neuron,
                        int first_entry, Answer best) {
@@ -98,7 +117,7 @@ AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int coun
   }
 }
 
-constexpr Kernel kKernel = {"avx512", Scan, ScanBatch};
+constexpr Kernel kKernel = {"avx512", Cells, Scan, ScanBatch};
 
 }  // namespace
 

@@ -12,4 +12,8 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
   return offer < best ? offer : best;
 }
 
+// Kernel::cells in plain C++.
+void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
+                std::uint64_t* pattern);
+
 }  // namespace recollect::wnn

@@ -64,7 +64,7 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
   }
 }
 
-constexpr Kernel kKernel = {"neon", Scan, ScanBatch};
+constexpr Kernel kKernel = {"neon", PlainCells, Scan, ScanBatch};
 
 }  // namespace
 

@@ -4,6 +4,24 @@
 #include "recollect/wnn/kernel_common.h"
 
 namespace recollect::wnn {
+
+void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
+                std::uint64_t* pattern) {
+  for (int n = begin; n < end; ++n) {
+    const std::int32_t* offset = offsets + std::ptrdiff_t{n} * kSynapses;
+    std::int32_t value[kSynapses + 1];
+    for (int i = 0; i < kSynapses; ++i) value[i] = values[offset[i]];
+    value[kSynapses] = value[0];
+    for (int w = 0; w < kWords; ++w) {
+      std::uint64_t word = 0;
+      for (int i = 0; i < 64; ++i) {
+        word |= std::uint64_t{value[64 * w + i] < value[64 * w + i + 1]} << i;
+      }
+      pattern[std::ptrdiff_t{n} * kWords + w] = word;
+    }
+  }
+}
+
 namespace {
 
 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
@@ -34,6 +52,6 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
 
 }  // namespace
 
-const Kernel kPlainKernel = {"plain", Scan, ScanBatch};
+const Kernel kPlainKernel = {"plain", PlainCells, Scan, ScanBatch};
 
 }  // namespace recollect::wnn

@@ -114,6 +114,23 @@ TEST(Kernel, EveryOneAgreesOverAHundredMillionDistances) {
   }
 }
 
+TEST(Kernel, CellsAgreeWithThePlainOnes) {
+  const int neurons = 301, pixels = 5000;
+  std::vector<std::int32_t> values, offsets;
+  for (std::uint64_t i = 0; i < pixels; ++i) {
+    values.push_back(static_cast<std::int32_t>(SubSeed(1, i) & (i % 2 ? 3 : 0xffffff)));
+  }
+  for (std::uint64_t i = 0; i < neurons * kSynapses; ++i) {
+    offsets.push_back(static_cast<std::int32_t>(SubSeed(2, i) % pixels));
+  }
+  const auto cells = [&](const Kernel& kernel) {
+    Words pattern(neurons * kWords, 7);
+    kernel.cells(values.data(), offsets.data(), 1, neurons, pattern.data());
+    return pattern;
+  };
+  for (const Kernel* kernel : Kernels()) EXPECT_EQ(cells(*kernel), cells(kPlainKernel));
+}
+
 TEST(Kernel, SkipsHalfOfThePatternsOnlyWhereTheOtherHalfRulesThemOut) {
   const Words words = Fill(2 * 64, Content::kRandom, 1);
   const Words pattern = {words[3], words[64 + 3]};  // frame 3 itself
