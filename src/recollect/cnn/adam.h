@@ -1,0 +1,43 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "recollect/cnn/tensor_file.h"
+
+namespace recollect::cnn {
+
+struct AdamOptions {
+  double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
+  double weight_decay = 0;  // decoupled (AdamW), times the learning rate
+  double gradient_limit =
+      0;  // gradients longer than this, over all parameters, are scaled; 0: none
+};
+
+// Adam (Kingma and Ba 2015), AdamW with weight decay. Unlike torch's its whole state can be put in
+// a file and taken back from there, bit for bit.
+class Adam {
+ public:
+  Adam(torch::nn::Module& network, const AdamOptions& options);
+
+  // One step down the parameters' gradients, which are then cleared.
+  void Step(double learning_rate);
+
+  // The moments, named after the parameters; and back, for the step number they were taken at.
+  std::vector<NamedTensor> State() const;
+  void Restore(const TensorFile& file, std::int64_t step, const std::string& where);
+
+ private:
+  struct Slot {
+    std::string name;
+    torch::Tensor parameter, mean, square;
+  };
+  AdamOptions options_;
+  std::vector<Slot> slots_;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace recollect::cnn

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include "recollect/geometry/camera.h"
+#include "recollect/geometry/se3.h"
+
+// Layers without weights. B is the batch, H x W a grid of pixels.
+namespace recollect::cnn {
+
+// SE3 layer (paper, section III-C): delta [B, 6] = (rotation vector in radians, translation in
+// metres) -> motion [B, 3, 4] = [R | t], R by Rodrigues' formula, by its series near zero.
+torch::Tensor Se3Layer(const torch::Tensor& delta);
+
+// Directions K^-1 (u, v, 1)^T of every pixel of the camera's image: [3, H, W], float.
+torch::Tensor RayGrid(const PinholeCamera& camera);
+
+// 3D grid layer: p(u, v) = d(u, v) K^-1 (u, v, 1)^T. depth [B, H, W] in metres along z and rays
+// [3, H, W] -> points [B, 3, H W] in metres in the camera's frame.
+torch::Tensor Grid3d(const torch::Tensor& depth, const torch::Tensor& rays);
+
+// motion [B, 3, 4] applied to points [B, 3, N] -> [B, 3, N].
+torch::Tensor Transform(const torch::Tensor& motion, const torch::Tensor& points);
+
+// (rotation vector, translation) of a motion, the form of the network's output.
+Vector6d DeltaFromMotion(const SE3& keyframe_from_live);
+SE3 MotionFromDelta(const Vector6d& delta);
+
+}  // namespace recollect::cnn

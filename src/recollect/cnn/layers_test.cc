@@ -1,0 +1,149 @@
+#include "recollect/cnn/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "recollect/cnn/gradient_check.h"
+#include "recollect/cnn/loss.h"
+
+namespace recollect::cnn {
+namespace {
+
+torch::Tensor Doubles(std::vector<double> values) {
+  return torch::tensor(values, torch::kDouble).view({1, -1});
+}
+
+// Rotation vectors around all the places where the formula changes its form.
+std::vector<torch::Tensor> HardDeltas() {
+  const double pi = std::numbers::pi;
+  std::vector<torch::Tensor> deltas;
+  for (const double angle : {0.0, 1e-8, 1e-3, 0.0999, 0.1001, 1.0, pi - 1e-3, pi - 1e-7, pi, 4.0}) {
+    const double x = angle * 2 / 3, y = -angle / 3, z = angle * 2 / 3;
+    deltas.push_back(Doubles({x, y, z, 1, -2, 3}));
+  }
+  return deltas;
+}
+
+TEST(Se3Layer, AgreesWithSe3) {
+  for (const torch::Tensor& delta : HardDeltas()) {
+    const auto* d = delta.data_ptr<double>();
+    const Eigen::Matrix4d expected =
+        SE3::FromRotationVector({d[0], d[1], d[2]}, {d[3], d[4], d[5]}).Matrix();
+    const torch::Tensor motion = Se3Layer(delta);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        EXPECT_NEAR(motion[0][row][column].item<double>(), expected(row, column), 1e-9) << delta;
+      }
+    }
+  }
+}
+
+TEST(Se3Layer, GradientAtZeroSmallAndNearPi) {
+  for (const torch::Tensor& delta : HardDeltas()) {
+    SCOPED_TRACE(delta);
+    ExpectGradients([](const auto& in) { return Se3Layer(in[0]); }, {delta});
+  }
+}
+
+TEST(Se3Layer, DeltaRoundTrip) {
+  const SE3 motion = SE3::FromRotationVector({0.3, -0.2, 0.1}, {1, 2, 3});
+  const SE3 back = MotionFromDelta(DeltaFromMotion(motion));
+  EXPECT_TRUE(back.Matrix().isApprox(motion.Matrix(), 1e-12));
+}
+
+TEST(Grid3d, IsDepthTimesRay) {
+  const PinholeCamera camera{4, 3, 200, 210, 1.5, 1.25};
+  const torch::Tensor depth = torch::rand({2, 3, 4}) + 1;
+  const torch::Tensor points = Grid3d(depth, RayGrid(camera));
+  ASSERT_EQ(points.sizes(), (torch::IntArrayRef{2, 3, 12}));
+  for (int v = 0; v < 3; ++v) {
+    for (int u = 0; u < 4; ++u) {
+      const Eigen::Vector3d expected = camera.Unproject(u, v, depth[1][v][u].item<double>());
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(points[1][i][4 * v + u].item<double>(), expected[i], 1e-5);
+      }
+    }
+  }
+}
+
+TEST(Grid3d, Gradient) {
+  const torch::Tensor depth = torch::rand({2, 3, 4}, torch::kDouble) + 1;
+  const torch::Tensor rays = torch::randn({3, 3, 4}, torch::kDouble);
+  ExpectGradients([](const auto& in) { return Grid3d(in[0], in[1]); }, {depth, rays});
+}
+
+TEST(Transform, Gradient) {
+  ExpectGradients(
+      [](const auto& in) { return Transform(in[0], in[1]); },
+      {torch::randn({2, 3, 4}, torch::kDouble), torch::randn({2, 3, 5}, torch::kDouble)});
+}
+
+class ProjectionLossTest : public testing::Test {
+ protected:
+  const torch::Tensor truth_ = Se3Layer(torch::randn({2, 6}, torch::kDouble) * 0.3);
+  const torch::Tensor points_ =
+      torch::randn({2, 3, 7}, torch::kDouble) + torch::tensor({0., 0., 20.}).view({1, 3, 1});
+  torch::Tensor valid_ = torch::ones({2, 7}, torch::kBool);
+};
+
+TEST_F(ProjectionLossTest, IsTheMeanDistanceOfTheValidPoints) {
+  valid_[0][2] = false;
+  valid_[1] = false;
+  const torch::Tensor predicted = Se3Layer(torch::randn({2, 6}, torch::kDouble) * 0.3);
+  double sum = 0;
+  for (int i = 0; i < 7; ++i) {
+    if (i == 2) continue;
+    const torch::Tensor p = points_[0].slice(1, i, i + 1);
+    const auto at = [&](const torch::Tensor& motion) {
+      return torch::mm(motion[0].slice(1, 0, 3), p) + motion[0].slice(1, 3, 4);
+    };
+    sum += (at(predicted) - at(truth_)).norm().item<double>();
+  }
+  EXPECT_NEAR(ProjectionLoss(predicted, truth_, points_, valid_).item<double>(), sum / 6, 1e-6);
+}
+
+TEST_F(ProjectionLossTest, IsZeroAtTheTruthAndWithoutValidPoints) {
+  EXPECT_NEAR(ProjectionLoss(truth_, truth_, points_, valid_).item<double>(), 0, 2e-5);
+  const torch::Tensor none = torch::zeros_like(valid_);
+  EXPECT_EQ(ProjectionLoss(truth_ + 1, truth_, points_, none).item<double>(), 0);
+}
+
+TEST_F(ProjectionLossTest, ABoundOnTheDepthBoundsTheRotationsShare) {
+  torch::Tensor turn = torch::zeros({2, 6}, torch::kDouble);
+  turn.select(1, 1).fill_(0.1);
+  const torch::Tensor still = Se3Layer(torch::zeros({2, 6}, torch::kDouble));
+  const double free = ProjectionLoss(Se3Layer(turn), still, points_, valid_).item<double>();
+  const double half = ProjectionLoss(Se3Layer(turn), still, points_, valid_, 10).item<double>();
+  EXPECT_GT(free, 1.5 * half);
+  EXPECT_NEAR(half, 10 * 2 * std::sin(0.05), 0.05);
+}
+
+TEST_F(ProjectionLossTest, GradientThroughSe3) {
+  valid_[1][3] = false;
+  for (const double far : {0.0, 15.0}) {
+    ExpectGradients(
+        [&](const auto& in) {
+          return ProjectionLoss(Se3Layer(in[0]), truth_, points_, valid_, far);
+        },
+        {torch::randn({2, 6}, torch::kDouble) * 0.2});
+  }
+}
+
+// At the truth itself the norm's kink is rounded off: the gradient is zero, not NaN.
+TEST_F(ProjectionLossTest, GradientIsFiniteAtTheTruth) {
+  torch::Tensor delta = torch::zeros({2, 6}, torch::kDouble).requires_grad_(true);
+  ProjectionLoss(Se3Layer(delta), Se3Layer(torch::zeros({2, 6}, torch::kDouble)), points_, valid_)
+      .backward();
+  EXPECT_TRUE(delta.grad().isfinite().all().item<bool>());
+}
+
+TEST(WeightedPoseLoss, Gradient) {
+  const torch::Tensor truth = torch::randn({3, 6}, torch::kDouble);
+  ExpectGradients([&](const auto& in) { return WeightedPoseLoss(in[0], truth, 7.0); },
+                  {torch::randn({3, 6}, torch::kDouble)});
+}
+
+}  // namespace
+}  // namespace recollect::cnn

@@ -1,0 +1,153 @@
+#include "recollect/cnn/loader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "recollect/cnn/augment.h"
+#include "recollect/cnn/contrast.h"
+#include "recollect/core/random.h"
+
+namespace recollect::cnn {
+namespace {
+
+constexpr std::size_t kAhead = 3;  // batches made before they are asked for
+
+void PutMotion(const SE3& motion, float* out) {
+  Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> values(out);
+  values = motion.Matrix().topRows<3>().cast<float>();
+}
+
+void PrepareInto(NetworkKind kind, const cv::Mat& image, float* out) {
+  cv::Mat values;
+  if (kind == NetworkKind::kCompact) {
+    values = NormaliseContrast(image);
+  } else {
+    image.convertTo(values, CV_32F, 1 / 255.0);
+  }
+  std::vector<cv::Mat> planes;
+  const std::size_t plane = values.total();
+  for (std::size_t c = 0; c < 3; ++c) planes.emplace_back(image.size(), CV_32F, out + c * plane);
+  cv::cvtColor(values, values, cv::COLOR_BGR2RGB);
+  cv::split(values, planes);
+}
+
+}  // namespace
+
+torch::Tensor PrepareImage(NetworkKind kind, const cv::Mat& image) {
+  torch::Tensor out = torch::empty({3, image.rows, image.cols});
+  PrepareInto(kind, image, out.data_ptr<float>());
+  return out;
+}
+
+namespace {
+
+// See MakeBatch; `light` is applied to each image.
+template <typename Light>
+Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen,
+               const Light& light) {
+  const auto count = static_cast<std::int64_t>(chosen.size());
+  const std::int64_t rows = data.crop.height, columns = data.crop.width;
+  Batch batch;
+  batch.live = torch::empty({count, 3, rows, columns});
+  batch.key = torch::empty({count, 3, rows, columns});
+  batch.motion = torch::empty({count, 3, 4});
+  const PinholeCamera grid = data.camera.Subsampled(kDepthStep);
+  batch.depth = torch::zeros({count, grid.height, grid.width});
+  const auto pixels = static_cast<std::size_t>(grid.height) * static_cast<std::size_t>(grid.width);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const Pair& pair = data.pairs[chosen[i]];
+    const std::size_t at = i * static_cast<std::size_t>(3 * rows * columns);
+    PrepareInto(kind, light(data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
+    PrepareInto(kind, light(data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
+    PutMotion(data.KeyframeFromLive(pair), batch.motion.data_ptr<float>() + i * 12);
+    const cv::Mat& depth = data.frames[pair.live].depth;
+    if (!depth.empty()) {
+      std::memcpy(batch.depth.data_ptr<float>() + i * pixels, depth.data, pixels * sizeof(float));
+    }
+  }
+  return batch;
+}
+
+}  // namespace
+
+Batch MakeBatch(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen) {
+  return Assemble(data, kind, chosen, [](const cv::Mat& image) { return image; });
+}
+
+Loader::Loader(const PairData& data, const LoaderOptions& options, std::int64_t first)
+    : data_(data), options_(options), number_(first), thread_([this] { Work(); }) {}
+
+Loader::~Loader() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+std::int64_t Loader::BatchesPerEpoch(const PairData& data, int batch) {
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(data.pairs.size()) / batch);
+}
+
+Batch Loader::Next() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !ready_.empty() || failure_; });
+  if (ready_.empty()) std::rethrow_exception(failure_);
+  Batch batch = std::move(ready_.front());
+  ready_.pop_front();
+  changed_.notify_all();
+  return batch;
+}
+
+void Loader::Work() {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stopping_ || ready_.size() < kAhead; });
+      if (stopping_) return;
+    }
+    Batch batch;
+    std::exception_ptr failure;
+    try {
+      batch = Make(number_++);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    if (failure) {
+      failure_ = failure;
+    } else {
+      ready_.push_back(std::move(batch));
+    }
+    changed_.notify_all();
+    if (failure) return;
+  }
+}
+
+Batch Loader::Make(std::int64_t number) {
+  const std::int64_t per_epoch = BatchesPerEpoch(data_, options_.batch);
+  const std::int64_t epoch = number / per_epoch;
+  if (epoch != shuffled_epoch_) {
+    order_.resize(data_.pairs.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    Random random(SubSeed(SubSeed(options_.seed, 1), static_cast<std::uint64_t>(epoch)));
+    for (std::size_t i = order_.size(); i > 1; --i) {
+      std::swap(order_[i - 1],
+                order_[static_cast<std::size_t>(random.Index(static_cast<std::int64_t>(i)))]);
+    }
+    shuffled_epoch_ = epoch;
+  }
+  const auto size = static_cast<std::size_t>(options_.batch);
+  const std::size_t from = static_cast<std::size_t>(number % per_epoch) * size;
+  const auto chosen = std::span(order_).subspan(from, std::min(size, order_.size() - from));
+  if (!options_.augment) return MakeBatch(data_, options_.kind, chosen);
+  Random random(SubSeed(SubSeed(options_.seed, 2), static_cast<std::uint64_t>(number)));
+  return Assemble(data_, options_.kind, chosen,
+                  [&](const cv::Mat& image) { return AugmentLight(image, random); });
+}
+
+}  // namespace recollect::cnn

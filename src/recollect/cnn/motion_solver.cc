@@ -1,0 +1,88 @@
+#include "recollect/cnn/motion_solver.h"
+
+#include "recollect/cnn/layers.h"
+
+namespace recollect::cnn {
+namespace {
+
+constexpr double kNearest = 0.5;  // metres; what would come closer than this is not used
+
+struct Residuals {
+  torch::Tensor turned;           // [B, 3, N]: R p
+  torch::Tensor x, y, inverse_z;  // [B, N]: projections under the motion
+  torch::Tensor dx, dy;           // [B, N]: seen less projected
+  torch::Tensor weight;           // [B, N]
+};
+
+Residuals Evaluate(const torch::Tensor& motion, const Sightings& sightings) {
+  Residuals r;
+  r.turned = torch::matmul(motion.slice(2, 0, 3), sightings.points);
+  const torch::Tensor moved = r.turned + motion.slice(2, 3, 4);
+  const torch::Tensor z = moved.select(1, 2);
+  r.inverse_z = z.clamp_min(kNearest).reciprocal();
+  r.x = moved.select(1, 0) * r.inverse_z;
+  r.y = moved.select(1, 1) * r.inverse_z;
+  r.dx = sightings.seen.select(1, 0) - r.x;
+  r.dy = sightings.seen.select(1, 1) - r.y;
+  r.weight = sightings.weight * (z > kNearest);
+  return r;
+}
+
+torch::Tensor StepFrom(const Residuals& r, const torch::Tensor& weight,
+                       const SolverOptions& options) {
+  // q = R p + t moves by dq = dw x (R p) + dt, its projection x = X / Z by (dX - x dZ) / Z.
+  const torch::Tensor a = r.turned.select(1, 0), b = r.turned.select(1, 1),
+                      c = r.turned.select(1, 2);
+  const torch::Tensor zero = torch::zeros_like(r.x), i = r.inverse_z;
+  const torch::Tensor row_x =
+      torch::stack({-r.x * b * i, (c + r.x * a) * i, -b * i, i, zero, -r.x * i}, 2);
+  const torch::Tensor row_y =
+      torch::stack({-(c + r.y * b) * i, r.y * a * i, a * i, zero, i, -r.y * i}, 2);
+  const torch::Tensor jacobian = torch::cat({row_x, row_y}, 1);  // [B, 2 N, 6]
+  const torch::Tensor residual = torch::cat({r.dx, r.dy}, 1).unsqueeze(2);
+  const torch::Tensor weights = torch::cat({weight, weight}, 1).unsqueeze(2);
+  const torch::Tensor weighted = (jacobian * weights).transpose(1, 2);
+
+  const double rotation = options.sighting_sd / options.prior_rotation_sd;
+  const double translation = options.sighting_sd / options.prior_translation_sd;
+  const torch::Tensor sd = torch::tensor(
+      {rotation, rotation, rotation, translation, translation, translation}, weight.options());
+  const torch::Tensor normal = torch::bmm(weighted, jacobian) + torch::diag(sd.square());
+  return torch::linalg_solve(normal, torch::bmm(weighted, residual)).squeeze(2);
+}
+
+torch::Tensor RobustWeight(const Residuals& r, const SolverOptions& options) {
+  const torch::Tensor square =
+      (r.dx.square() + r.dy.square()) / (options.outlier * options.outlier);
+  return r.weight / (1.0 + square.detach());
+}
+
+}  // namespace
+
+torch::Tensor Moved(const torch::Tensor& motion, const torch::Tensor& delta) {
+  const torch::Tensor step = Se3Layer(delta);
+  return torch::cat({torch::bmm(step.slice(2, 0, 3), motion.slice(2, 0, 3)),
+                     motion.slice(2, 3, 4) + step.slice(2, 3, 4)},
+                    2);
+}
+
+torch::Tensor SolverStep(const torch::Tensor& motion, const Sightings& sightings,
+                         const SolverOptions& options) {
+  const Residuals residuals = Evaluate(motion, sightings);
+  return StepFrom(residuals, residuals.weight, options);
+}
+
+torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options) {
+  const std::int64_t batch = sightings.points.size(0);
+  torch::Tensor motion =
+      torch::eye(3, 4, sightings.points.options()).unsqueeze(0).repeat({batch, 1, 1});
+  for (int i = 0; i < options.iterations; ++i) {
+    const bool last = i + 1 == options.iterations;
+    const torch::AutoGradMode gradients(last && torch::GradMode::is_enabled());
+    const Residuals residuals = Evaluate(motion, sightings);
+    motion = Moved(motion, StepFrom(residuals, RobustWeight(residuals, options), options));
+  }
+  return motion;
+}
+
+}  // namespace recollect::cnn

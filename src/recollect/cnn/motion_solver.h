@@ -1,0 +1,36 @@
+#pragma once
+
+#include <torch/torch.h>
+
+// The motion that best explains where points of the live image are seen in the key frame: weighted
+// least squares over all cells at once, as a layer. B is the batch, N the number of cells.
+namespace recollect::cnn {
+
+struct Sightings {
+  torch::Tensor points;  // [B, 3, N]: in the live camera's frame, metres
+  torch::Tensor seen;    // [B, 2, N]: (x, y) = (X, Y) / Z where the key frame sees them
+  torch::Tensor weight;  // [B, N]: 0 or more
+};
+
+struct SolverOptions {
+  int iterations = 5;
+  // A residual of this size, in x and y, halves a sighting's weight, one of three times a tenth.
+  double outlier = 0.03;
+  // Standard deviations of a motion before anything is seen; they hold the answer near "no motion"
+  // where little is known. Of x and y a sighting of weight 1 knows no better than `sighting_sd`.
+  double prior_rotation_sd = 0.1, prior_translation_sd = 4, sighting_sd = 0.03;
+};
+
+// One Gauss-Newton step from motion [B, 3, 4]: (dw, dt) [B, 6] with R <- Exp(dw) R, t <- t + dt.
+// Differentiable in all of `sightings`.
+torch::Tensor SolverStep(const torch::Tensor& motion, const Sightings& sightings,
+                         const SolverOptions& options);
+
+// keyframe_from_live [B, 3, 4], by steps from "no motion" whose weights fall with the residuals
+// (Cauchy). Gradients are those of the last step, which at the minimum are the minimum's own.
+torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options = {});
+
+// SE3 layer of delta [B, 6] applied as in SolverStep.
+torch::Tensor Moved(const torch::Tensor& motion, const torch::Tensor& delta);
+
+}  // namespace recollect::cnn

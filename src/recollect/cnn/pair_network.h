@@ -1,0 +1,34 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <memory>
+#include <string>
+
+#include "recollect/cnn/network_kind.h"
+
+namespace recollect::cnn {
+
+// What a network says of a batch of pairs.
+struct Prediction {
+  torch::Tensor motion;  // [B, 3, 4]: keyframe_from_live, metres
+  // Of a network that correlates the two images: the features [B, C, cells] whose products are the
+  // scores, and the logarithm of the scores' sum (Correlation::total), [B, cells]. Cells in row
+  // order, cell (x, y) at pixel (8 x, 8 y). Undefined for other networks.
+  torch::Tensor live_features, key_features, total;
+  // Logarithm of the depth in metres of every live cell, [B, cells]; undefined where the network
+  // has no such output.
+  torch::Tensor log_depth;
+};
+
+// A siamese network. Inputs [B, 3, H, W], RGB; see NetworkTraits for their scale.
+class PairNetwork : public torch::nn::Module {
+ public:
+  virtual Prediction forward(const torch::Tensor& live, const torch::Tensor& key) = 0;
+};
+
+// A network with fresh weights, drawn from torch's global generator (torch::manual_seed), for
+// crops taken by `camera`.
+std::shared_ptr<PairNetwork> MakeNetwork(NetworkKind kind, const PinholeCamera& camera);
+
+}  // namespace recollect::cnn

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "recollect/cnn/model_info.h"
+#include "recollect/geometry/se3.h"
+
+namespace recollect::cnn {
+
+class PairNetwork;
+
+// Two crops, 8-bit B, G, R of crop().width x crop().height: PoseNetwork::crop().Apply(image).
+struct CropPair {
+  cv::Mat live, key;
+};
+
+// A trained network, ready to answer. Not for several threads at once: each takes its own copy
+// (copies share the weights).
+class PoseNetwork {
+ public:
+  // Throws Error naming the file when it is missing, damaged or not a model. threads: how many
+  // torch may use, in this and every other network of the program; 0: one for each core.
+  static PoseNetwork Load(const std::filesystem::path& path, int threads = 0);
+
+  PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network);
+
+  // Written beside its target and renamed into place. Throws Error when that fails.
+  void Save(const std::filesystem::path& path) const;
+
+  const ModelInfo& info() const { return info_; }
+  const Crop& crop() const { return info_.crop; }
+
+  // The motion that takes points of the live camera to the key frame's: with G_K the key frame's
+  // pose world_from_camera, the live pose is G_L = G_K * KeyframeFromLive(...). Throws Error where
+  // a crop has another size or type than crop() says.
+  SE3 KeyframeFromLive(const cv::Mat& live_crop, const cv::Mat& key_crop) const;
+
+  // The same for many pairs at once, in their order.
+  std::vector<SE3> KeyframeFromLive(std::span<const CropPair> pairs) const;
+
+  const std::shared_ptr<PairNetwork>& network() const { return network_; }
+
+ private:
+  ModelInfo info_;
+  std::shared_ptr<PairNetwork> network_;
+};
+
+}  // namespace recollect::cnn

@@ -1,0 +1,77 @@
+#include "recollect/cnn/train_options.h"
+
+#include <nlohmann/json.hpp>
+
+#include "recollect/cnn/checkpoint.h"
+#include "recollect/core/error.h"
+
+namespace recollect::cnn {
+
+TrainOptions TrainOptions::Paper(NetworkKind kind) {
+  TrainOptions options;
+  options.network = kind;
+  return options;
+}
+
+TrainOptions TrainOptions::Compact() {
+  TrainOptions options;
+  options.network = NetworkKind::kCompact;
+  options.epochs = 4;
+  options.learning_rate = 1e-3;
+  options.schedule = Schedule::kCosine;
+  options.warm_up_steps = 50;
+  options.weight_decay = 1e-2;
+  options.gradient_limit = 5;
+  options.augment = true;
+  options.loss = {.far_metres = 30, .correspondence_weight = 0.3, .depth_weight = 0.3};
+  options.validate_steps = 100;
+  return options;
+}
+
+std::string ToJson(const TrainOptions& o) {
+  return nlohmann::json{{"network", Name(o.network)},
+                        {"epochs", o.epochs},
+                        {"batch", o.batch},
+                        {"learning_rate", o.learning_rate},
+                        {"schedule", o.schedule == Schedule::kCosine ? "cosine" : "halving"},
+                        {"warm_up_steps", o.warm_up_steps},
+                        {"weight_decay", o.weight_decay},
+                        {"gradient_limit", o.gradient_limit},
+                        {"augment", o.augment},
+                        {"far_metres", o.loss.far_metres},
+                        {"correspondence_weight", o.loss.correspondence_weight},
+                        {"depth_weight", o.loss.depth_weight},
+                        {"max_distance_m", o.pairs.max_distance_m},
+                        {"max_angle_rad", o.pairs.max_angle_rad},
+                        {"key_spacing_m", o.pairs.key_spacing_m},
+                        {"validate_steps", o.validate_steps},
+                        {"validation_pairs", o.validation_pairs},
+                        {"patience", o.patience},
+                        {"validation_share", o.validation_share},
+                        {"seed", o.seed}}
+      .dump();
+}
+
+void RequireSensible(const TrainOptions& o) {
+  const auto require = [](bool holds, const std::string& option, const std::string& range) {
+    Require(holds, option, "must be " + range);
+  };
+  require(o.epochs > 0, "epochs", "positive");
+  require(o.batch > 0, "batch", "positive");
+  require(o.minutes >= 0, "minutes", "zero or more");
+  require(o.learning_rate > 0, "learning rate", "positive");
+  require(o.validation_pairs > 0, "validation pairs", "positive");
+  require(o.validation_share > 0 && o.validation_share < 1, "validation share", "within (0, 1)");
+  require(o.loss.far_metres >= 0 && o.loss.correspondence_weight >= 0 && o.loss.depth_weight >= 0,
+          "loss", "zero or more in all its parts");
+  require(!o.out.empty(), "out", "the name of a file");
+}
+
+std::filesystem::path CheckpointPath(const TrainOptions& options) {
+  if (!options.checkpoint.empty()) return options.checkpoint;
+  std::filesystem::path path = options.out;
+  path += ".checkpoint";
+  return path;
+}
+
+}  // namespace recollect::cnn

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "recollect/cnn/network_kind.h"
+#include "recollect/cnn/pair_data.h"
+
+namespace recollect::cnn {
+
+struct LossOptions {
+  double far_metres = 0;  // points further away are drawn to this depth (ProjectionLoss); 0: none
+  // Of the auxiliary losses of networks that correlate (the paper has neither); 0 switches off.
+  double correspondence_weight = 0;  // CorrespondenceLoss
+  double depth_weight = 0;           // mean |log predicted depth / true depth|
+};
+
+enum class Schedule {
+  kHalving,  // halved after each epoch, as in the paper
+  kCosine,   // falls to zero along half a cosine over the whole training
+};
+
+// The defaults are the paper's regime.
+struct TrainOptions {
+  NetworkKind network = NetworkKind::kPaperA;
+  int epochs = 7;
+  double minutes = 0;  // wall time for all of it, data reading included; 0: no bound
+  int batch = 24;
+  double learning_rate = 1e-4;
+  Schedule schedule = Schedule::kHalving;
+  int warm_up_steps = 0;      // over which the rate rises from zero
+  double weight_decay = 0;    // decoupled
+  double gradient_limit = 0;  // length of the gradient beyond which it is scaled down; 0: none
+  bool augment = false;       // AugmentLight
+  LossOptions loss;
+  PairOptions pairs;
+
+  int validate_steps = 0;      // steps between validations; 0: an epoch
+  int validation_pairs = 600;  // at most so many, evenly chosen
+  int patience = 0;            // validations without a better one before training ends; 0: never
+  // Without validation laps: the share of the road, in blocks of 40 m, that is not trained on but
+  // validated.
+  double validation_share = 0.1;
+
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: one for each core
+
+  std::filesystem::path out;  // the model file; the best by validation so far is always there
+  std::filesystem::path csv;  // curves, a row a validation; empty: none
+  // Where training can be taken up again; written at each validation, removed at the end.
+  std::filesystem::path checkpoint;  // empty: `out` with ".checkpoint" added
+  bool resume = false;               // take up from the checkpoint if there is one
+
+  // The paper's regime for its network A or B.
+  static TrainOptions Paper(NetworkKind kind);
+  // What suits the compact network: augmentation, auxiliary losses, AdamW with warm-up and cosine.
+  static TrainOptions Compact();
+};
+
+}  // namespace recollect::cnn
