@@ -7,7 +7,9 @@ namespace recollect::app {
 
 void AddDataset(CLI::App& app);
 void AddExperiment(CLI::App& app);
+void AddExperimentPairs(CLI::App& experiment);
 void AddMap(CLI::App& app);
 void AddPlaces(CLI::App& app);
+void AddTrain(CLI::App& app);
 
 }  // namespace recollect::app

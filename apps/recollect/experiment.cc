@@ -9,30 +9,33 @@
 namespace recollect::app {
 namespace {
 
-struct ExperimentFlags {
+struct TablesFlags {
   Common common;
-  std::string name;
   std::filesystem::path data;
 };
 
-void RunExperiment(const ExperimentFlags& flags) {
+void RunTables(const TablesFlags& flags) {
   const DataTables tables = ComputeDataTables(flags.data);
   fmt::print("{}", Describe(tables));
   WriteFigures(flags.common, ToJson(tables));
 }
 
+void AddExperimentTables(CLI::App& experiment) {
+  auto flags = std::make_shared<TablesFlags>();
+  CLI::App* command = AddCommand(experiment, "tables", "The paper's data tables and baselines",
+                                 flags->common, [flags] { RunTables(*flags); });
+  command->add_option("--data", flags->data, "the folder of UFES-LAPS")
+      ->type_name("DIR")
+      ->required();
+}
+
 }  // namespace
 
 void AddExperiment(CLI::App& app) {
-  auto flags = std::make_shared<ExperimentFlags>();
-  CLI::App* command = AddCommand(app, "experiment", "Repeat an experiment of the paper",
-                                 flags->common, [flags] { RunExperiment(*flags); });
-  command->add_option("name", flags->name, "tables: the paper's data tables and baselines")
-      ->required()
-      ->check(CLI::IsMember({"tables"}));
-  command->add_option("--data", flags->data, "the data set: for tables, the folder of UFES-LAPS")
-      ->type_name("DIR")
-      ->required();
+  CLI::App* experiment = app.add_subcommand("experiment", "Repeat an experiment");
+  experiment->require_subcommand(1);
+  AddExperimentTables(*experiment);
+  AddExperimentPairs(*experiment);
 }
 
 }  // namespace recollect::app

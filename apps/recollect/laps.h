@@ -1,17 +1,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "recollect/dataset/lap.h"
+#include "recollect/dataset/reader.h"
 
 namespace recollect::app {
 
+// The laps of a folder, or of "FOLDER@FROM:TO" with only those frames of each whose place in the
+// lap, from 0 for its first to 1 for its end, is within [FROM, TO).
+std::vector<Lap> ReadLapRange(const std::string& folder, Format format);
+
 // The flags that name laps: --lap DIR (several, or a folder of laps) and --format.
 struct LapFlags {
-  std::vector<std::filesystem::path> folders;
+  std::vector<std::string> folders;  // each may end in @FROM:TO
   std::string format = "guess";
 
   void AddTo(CLI::App& command, bool required = true);

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   AddExperiment(app);
   AddMap(app);
   AddPlaces(app);
+  AddTrain(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.h"
+#include "commands.h"
+#include "laps.h"
+#include "recollect/cnn/pair_errors.h"
+
+namespace recollect::app {
+namespace {
+
+struct PairsFlags {
+  Common common;
+  std::filesystem::path model;
+  std::vector<std::string> live;
+  LapFlags laps;
+  cnn::PairOptions pairs;
+};
+
+void RunPairs(const PairsFlags& flags) {
+  const cnn::PoseNetwork network = cnn::PoseNetwork::Load(flags.model, flags.common.threads);
+  std::vector<Lap> live;
+  for (const std::string& folder : flags.live) {
+    for (Lap& lap : ReadLapRange(folder, ParseFormat(flags.laps.format))) {
+      live.push_back(std::move(lap));
+    }
+  }
+  ThreadPool pool(flags.common.threads);
+  const ProgressSink progress = TerminalProgress();
+  const cnn::PairData data =
+      cnn::LoadPairs(live, flags.laps.Read(), network.crop(), flags.pairs, pool, progress);
+  const cnn::PairFigures figures = cnn::EvaluatePairs(network, data, {}, progress).Figures();
+  fmt::print(
+      "{} pairs up to {} m apart\n"
+      "               mean      median\n"
+      "position     {:6.3f} m   {:6.3f} m\n"
+      "no motion    {:6.3f} m   {:6.3f} m\n"
+      "heading      {:6.2f} deg {:6.2f} deg\n"
+      "no motion    {:6.2f} deg\n",
+      figures.pairs, flags.pairs.max_distance_m, figures.position_mean_m, figures.position_median_m,
+      figures.no_motion_mean_m, figures.no_motion_median_m, figures.heading_mean_deg,
+      figures.heading_median_deg, figures.no_motion_heading_mean_deg);
+  WriteFigures(flags.common, nlohmann::json::parse(cnn::ToJson(figures)));
+}
+
+}  // namespace
+
+void AddExperimentPairs(CLI::App& experiment) {
+  auto flags = std::make_shared<PairsFlags>();
+  CLI::App* command =
+      AddCommand(experiment, "pairs", "Errors of a network over all pairs of live and key frames",
+                 flags->common, [flags] { RunPairs(*flags); });
+  command->add_option("--model", flags->model, "the network")->required();
+  command->add_option("--live", flags->live, "laps of live frames")->type_name("DIR")->required();
+  flags->laps.AddTo(*command);
+  command
+      ->add_option("--distance", flags->pairs.max_distance_m, "metres between two frames at most")
+      ->capture_default_str();
+  command->add_option("--key-spacing", flags->pairs.key_spacing_m,
+                      "metres between key frames; 0: all frames are key frames");
+}
+
+}  // namespace recollect::app
