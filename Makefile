@@ -1,8 +1,12 @@
 # Everything a fresh Debian 12 machine needs is one word away: make demo, make test.
 PACKAGES = build-essential cmake ninja-build ccache pkg-config \
   libtorch-dev libopencv-dev libeigen3-dev libopenblas0-pthread libcli11-dev libspdlog-dev \
-  nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev
+  nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev \
+  gnuplot-nox
 RECOLLECT = build/recollect
+
+# make demo DATA=folder: the laps to show; see docs/data.md.
+DATA =
 
 .PHONY: setup build test sanitize demo format
 
@@ -25,6 +29,10 @@ build: setup
 
 test: build
 	ctest --preset default
+
+# Maps all laps of DATA but the last, trains on them, localises the last, draws the picture.
+demo: build
+	@$(RECOLLECT) demo $(if $(DATA),--data $(DATA))
 
 # The unit tests again under the address and undefined-behaviour sanitizers.
 sanitize: setup

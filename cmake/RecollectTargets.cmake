@@ -6,7 +6,7 @@ add_library(recollect_flags INTERFACE)
 target_compile_options(recollect_flags INTERFACE -Wall -Wextra -Wconversion -Werror)
 if(RECOLLECT_SANITIZE)
   target_compile_options(recollect_flags INTERFACE -fsanitize=address,undefined
-                                                   -fno-omit-frame-pointer -O1)
+                                                   -fno-omit-frame-pointer -O1 -g1)
   target_link_options(recollect_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
@@ -20,13 +20,14 @@ function(recollect_library name)
 endfunction()
 
 # recollect_test(NAME SOURCES a_test.cc ... [DEPENDS targets ...] [LABEL label]): ctest lists each
-# case on its own. Tests see the measuring data, where it is there, through RECOLLECT_SHARED_DATA.
+# case on its own, run from the top of the checkout: RECOLLECT_SHARED_DATA, where the measuring data
+# lies if it is there at all, is relative to that.
 function(recollect_test name)
   cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main recollect_flags)
   target_compile_definitions(${name} PRIVATE
-    RECOLLECT_SHARED_DATA="${CMAKE_SOURCE_DIR}/../shared/data")
+    RECOLLECT_SHARED_DATA="../shared/data")
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -34,5 +35,6 @@ function(recollect_test name)
     set(ARG_TIMEOUT 600)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                       WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
                        PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -6,8 +6,11 @@
 namespace recollect::app {
 
 void AddDataset(CLI::App& app);
+void AddDemo(CLI::App& app);
+void AddEvaluate(CLI::App& app);
 void AddExperiment(CLI::App& app);
 void AddExperimentPairs(CLI::App& experiment);
+void AddLocalize(CLI::App& app);
 void AddMap(CLI::App& app);
 void AddPlaces(CLI::App& app);
 void AddTrain(CLI::App& app);

@@ -26,7 +26,7 @@ void Run(const Options& options) {
   Require(laps.size() == 1, "--lap", fmt::format("{} laps where one is judged", laps.size()));
   ThreadPool pool(options.common.threads);
   const Map map = Map::Open(options.map);
-  Localizer localizer(map, cnn::PoseNetwork::Load(options.model), pool);
+  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
   const Evaluation evaluation =
       Evaluate(localizer, laps.front(), options.evaluation, TerminalProgress());
   fmt::print("{}", FormatTable(evaluation));

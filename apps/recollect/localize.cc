@@ -8,7 +8,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/dataset/image.h"
-#include "recollect/dataset/writer.h"
+#include "recollect/dataset/trajectory_io.h"
 #include "recollect/localization/localizer.h"
 
 namespace recollect::app {
@@ -45,15 +45,15 @@ void Run(const Options& options) {
   const std::vector<Live> live = Gather(options);
   ThreadPool pool(options.common.threads);
   const Map map = Map::Open(options.map);
-  Localizer localizer(map, cnn::PoseNetwork::Load(options.model), pool);
+  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
   const ProgressSink progress = TerminalProgress();
 
-  std::vector<double> times;
+  std::vector<StampedPose> stamped;
   std::vector<SE3> poses;
   nlohmann::json figures = nlohmann::json::array();
   for (const Live& one : live) {
     const Localization answer = localizer.Localize(ReadColour(one.image));
-    times.push_back(one.time);
+    stamped.push_back({one.time, answer.world_from_camera});
     poses.push_back(answer.world_from_camera);
     const Eigen::Vector3d p = answer.world_from_camera.translation();
     if (options.out.empty() && options.kitti.empty()) {
@@ -73,8 +73,8 @@ void Run(const Options& options) {
     Report(progress, "localise", static_cast<std::int64_t>(poses.size()),
            static_cast<std::int64_t>(live.size()));
   }
-  if (!options.out.empty()) WriteTumTrajectory(options.out, times, poses);
-  if (!options.kitti.empty()) WriteKittiTrajectory(options.kitti, poses);
+  if (!options.out.empty()) WriteTumTrajectory(options.out, stamped);
+  if (!options.kitti.empty()) WriteKittiPoses(options.kitti, poses);
   WriteFigures(options.common, {{"frames", figures}});
 }
 

@@ -14,7 +14,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", RECOLLECT_VERSION);
   using namespace recollect::app;
   AddDataset(app);
+  AddDemo(app);
+  AddEvaluate(app);
   AddExperiment(app);
+  AddLocalize(app);
   AddMap(app);
   AddPlaces(app);
   AddTrain(app);

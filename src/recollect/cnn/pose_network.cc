@@ -45,6 +45,13 @@ PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads) {
   return {info, network};
 }
 
+PoseNetwork PoseNetwork::Untrained(int image_width, int image_height) {
+  ModelInfo info;
+  info.network = NetworkKind::kPaperB;
+  info.crop = DefaultCrop(info.network, image_width, image_height);
+  return {info, MakeNetwork(info.network, info.camera)};
+}
+
 void PoseNetwork::Save(const std::filesystem::path& path) const {
   TensorFile file;
   file.header["model"] = nlohmann::json::parse(ToJson(info_));

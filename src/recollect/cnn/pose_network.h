@@ -26,6 +26,10 @@ class PoseNetwork {
   // torch may use, in this and every other network of the program; 0: one for each core.
   static PoseNetwork Load(const std::filesystem::path& path, int threads = 0);
 
+  // The paper's network B before any training: its answer is "no motion", always. For images of
+  // the given size; what evaluation and tests set a trained network against.
+  static PoseNetwork Untrained(int image_width, int image_height);
+
   PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network);
 
   // Written beside its target and renamed into place. Throws Error when that fails.

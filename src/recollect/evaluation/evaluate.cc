@@ -1,5 +1,6 @@
 #include "recollect/evaluation/evaluate.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -40,7 +41,8 @@ int Apart(std::size_t a, std::size_t b) {
 Row MakeRow(const std::string& name, const std::vector<LiveFrame>& frames,
             const std::function<bool(const LiveFrame&)>& answered,
             const std::function<PoseError(const LiveFrame&)>& error) {
-  Row row{.name = name};
+  Row row;
+  row.name = name;
   std::vector<double> position, heading;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!answered(frames[i])) continue;

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "recollect/core/files.h"
-#include "recollect/dataset/writer.h"
+#include "recollect/dataset/trajectory_io.h"
 
 namespace recollect {
 namespace {
@@ -107,19 +107,19 @@ void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
 }
 
 void WriteReport(const Evaluation& e, const Map& map, const std::filesystem::path& folder) {
-  std::vector<double> times;
-  std::vector<SE3> estimates, truths;
+  std::vector<StampedPose> estimates, truths;
+  std::vector<SE3> estimated_poses;
   for (const LiveFrame& f : e.frames) {
-    times.push_back(f.time);
-    estimates.push_back(f.answer.world_from_camera);
-    truths.push_back(f.true_world_from_camera);
+    estimates.push_back({f.time, f.answer.world_from_camera});
+    truths.push_back({f.time, f.true_world_from_camera});
+    estimated_poses.push_back(f.answer.world_from_camera);
   }
   AtomicWrite(folder / "table.txt", FormatTable(e));
   AtomicWrite(folder / "figures.json", ToFigures(e).dump(2) + "\n");
   WriteFramesCsv(e, folder / "frames.csv");
-  WriteTumTrajectory(folder / "estimate.tum", times, estimates);
-  WriteKittiTrajectory(folder / "estimate.kitti", estimates);
-  WriteTumTrajectory(folder / "truth.tum", times, truths);
+  WriteTumTrajectory(folder / "estimate.tum", estimates);
+  WriteKittiPoses(folder / "estimate.kitti", estimated_poses);
+  WriteTumTrajectory(folder / "truth.tum", truths);
   PlotEvaluation(e, map, folder / "evaluation.png");
 }
 
