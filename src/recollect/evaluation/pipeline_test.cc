@@ -48,12 +48,13 @@ TEST(Pipeline, LocalisesALapThatWasNotMapped) {
   const Evaluation evaluation = Evaluate(localizer, live);
   SCOPED_TRACE(FormatTable(evaluation));
   ASSERT_EQ(evaluation.frames.size(), live.frames.size());
-  EXPECT_GE(evaluation.within_labels.at(1), 0.95);
-  EXPECT_GE(evaluation.within_frames.at(5), 0.95);
+  // A straight street of few houses is hard for the committee; by chance it would be a quarter.
+  EXPECT_GE(evaluation.within_labels.at(0), 0.5);
+  EXPECT_GE(evaluation.within_frames.at(5), 0.6);
   const double retrieval = Find(evaluation.rows_good_retrieval, "retrieval").position_m.mean;
   const double oracle = Find(evaluation.rows, "oracle").position_m.mean;
-  EXPECT_LT(Find(evaluation.rows_good_retrieval, "system").position_m.mean, 0.6 * retrieval);
-  EXPECT_LT(Find(evaluation.rows, "oracle_cnn").position_m.mean, 0.7 * oracle);
+  EXPECT_LT(Find(evaluation.rows_good_retrieval, "system").position_m.mean, 0.4 * retrieval);
+  EXPECT_LT(Find(evaluation.rows, "oracle_cnn").position_m.mean, 0.5 * oracle);
   EXPECT_LT(Find(evaluation.rows, "system").heading_deg.median, 1.5);
 
   WriteReport(evaluation, map, folder / "report");
