@@ -12,6 +12,7 @@ void AddExperiment(CLI::App& app);
 void AddExperimentPairs(CLI::App& experiment);
 void AddLocalize(CLI::App& app);
 void AddMap(CLI::App& app);
+void AddBench(CLI::App& app);
 void AddPlaces(CLI::App& app);
 void AddTrain(CLI::App& app);
 

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   AddExperiment(app);
   AddLocalize(app);
   AddMap(app);
+  AddBench(app);
   AddPlaces(app);
   AddTrain(app);
   try {

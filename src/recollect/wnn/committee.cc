@@ -8,17 +8,22 @@
 
 namespace recollect::wnn {
 
-Recollection CountVotes(const Memory& memory, std::vector<Answer> answers) {
+Recollection CountVotes(std::span<const int> labels, std::vector<Answer> answers) {
   Recollection result;
-  std::vector<int> votes(static_cast<std::size_t>(memory.labels()), 0);
+  std::vector<int> votes;  // the labels of all who answered
+  votes.reserve(answers.size());
   for (const Answer answer : answers) {
-    if (answer == kNoAnswer) continue;
-    ++result.neurons_read;
-    ++votes[static_cast<std::size_t>(memory.label(AnswerEntry(answer)))];
+    if (answer != kNoAnswer) {
+      votes.push_back(labels[static_cast<std::size_t>(AnswerEntry(answer))]);
+    }
   }
-  for (int label = 0; label < memory.labels(); ++label) {
-    const int count = votes[static_cast<std::size_t>(label)];
-    if (count > 0) result.histogram.push_back({label, count});
+  result.neurons_read = static_cast<int>(votes.size());
+  std::sort(votes.begin(), votes.end());
+  for (const int label : votes) {
+    if (result.histogram.empty() || result.histogram.back().label != label) {
+      result.histogram.push_back({label, 0});
+    }
+    ++result.histogram.back().votes;
   }
   std::stable_sort(result.histogram.begin(), result.histogram.end(),
                    [](const LabelVotes& a, const LabelVotes& b) { return a.votes > b.votes; });

@@ -3,16 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "recollect/core/error.h"
-#include "recollect/wnn/test_patterns.h"
 
 namespace recollect::wnn {
 namespace {
-
-Memory FourEntries(std::vector<int> labels) {
-  Memory memory(6);
-  for (std::size_t i = 0; i < labels.size(); ++i) memory.Append(RandomPattern(6, i), labels[i]);
-  return memory;
-}
 
 std::vector<Answer> Answers(std::initializer_list<int> entries) {
   std::vector<Answer> answers;
@@ -23,7 +16,7 @@ std::vector<Answer> Answers(std::initializer_list<int> entries) {
 }
 
 TEST(Committee, CountsVotesByLabel) {
-  const Recollection r = CountVotes(FourEntries({5, 3, 5, 0}), Answers({0, 1, 2, 1, 2, 3}));
+  const Recollection r = CountVotes(std::vector<int>({5, 3, 5, 0}), Answers({0, 1, 2, 1, 2, 3}));
   EXPECT_EQ(r.winner, 5);
   EXPECT_EQ(r.neurons_read, 6);
   EXPECT_DOUBLE_EQ(r.confidence, 1.0 / 3);
@@ -35,18 +28,19 @@ TEST(Committee, CountsVotesByLabel) {
 }
 
 TEST(Committee, OfEqualLabelsTheLowestWinsWithoutConfidence) {
-  const Recollection r = CountVotes(FourEntries({9, 3, 7, 0}), Answers({0, 0, 2, 2, 1, 1}));
+  const Recollection r = CountVotes(std::vector<int>({9, 3, 7, 0}), Answers({0, 0, 2, 2, 1, 1}));
   EXPECT_EQ(r.winner, 3);
   EXPECT_DOUBLE_EQ(r.confidence, 0);
   EXPECT_EQ(r.histogram[1].label, 7);
 }
 
 TEST(Committee, LeavesOutNeuronsThatWereNotAsked) {
-  const Recollection r = CountVotes(FourEntries({0, 1, 2, 3}), Answers({-1, 2, -1, -1, 2, -1}));
+  const Recollection r =
+      CountVotes(std::vector<int>({0, 1, 2, 3}), Answers({-1, 2, -1, -1, 2, -1}));
   EXPECT_EQ(r.neurons_read, 2);
   EXPECT_EQ(r.winner, 2);
   EXPECT_DOUBLE_EQ(r.confidence, 1);
-  const Recollection none = CountVotes(Memory(1), {kNoAnswer});
+  const Recollection none = CountVotes({}, {kNoAnswer});
   EXPECT_EQ(none.winner, -1);
   EXPECT_EQ(none.confidence, 0);
 }

@@ -27,6 +27,11 @@ EntrySet& EntrySet::AllowRange(int begin, int end) {
   return *this;
 }
 
+bool EntrySet::Allows(int entry) const {
+  const std::size_t block = memory_->BlockOf(entry);
+  return block < masks_.size() && (masks_[block] >> (entry - memory_->first_entry(block)) & 1);
+}
+
 int EntrySet::size() const {
   int count = 0;
   for (const std::uint64_t mask : masks_) count += std::popcount(mask);

@@ -19,6 +19,7 @@ class EntrySet {
   EntrySet& AllowRange(int begin, int end);  // [begin, end)
 
   int size() const;
+  bool Allows(int entry) const;
   // By block of the memory: bit i says whether frame i may be looked at. Blocks that came after
   // the set are not in it.
   std::span<const std::uint64_t> masks() const { return masks_; }

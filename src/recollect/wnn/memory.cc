@@ -62,8 +62,14 @@ Memory::Memory(int neurons) : neurons_(neurons) {
 }
 
 void Memory::AddLabel(int label) {
+  if (label >= label_count_) {
+    label_count_ = label + 1;
+    last_of_.resize(static_cast<std::size_t>(label_count_), -1);
+  }
+  int& last = last_of_[static_cast<std::size_t>(label)];
+  before_.push_back(last);
+  last = entries();
   labels_.push_back(label);
-  label_count_ = std::max(label_count_, label + 1);
 }
 
 int Memory::Append(std::span<const std::uint64_t> pattern) { return Append(pattern, entries()); }
@@ -102,6 +108,16 @@ void Memory::AddBlock(const BlockView& block, std::span<const int> labels) {
   for (const int label : labels) AddLabel(label);
   blocks_.push_back(block);
   last_is_owned_ = false;
+}
+
+std::vector<int> Memory::EntriesOf(int label) const {
+  std::vector<int> entries;
+  if (label < 0 || label >= label_count_) return entries;
+  for (int entry = last_of_[static_cast<std::size_t>(label)]; entry >= 0;
+       entry = before_[static_cast<std::size_t>(entry)]) {
+    entries.push_back(entry);
+  }
+  return entries;
 }
 
 std::size_t Memory::BlockOf(int entry) const {

@@ -41,8 +41,12 @@ class Memory {
 
   int neurons() const { return neurons_; }
   int entries() const { return static_cast<int>(labels_.size()); }
-  int labels() const { return label_count_; }  // the highest label + 1
+  int labels() const { return label_count_; }                    // the highest label + 1
+  std::span<const int> entry_labels() const { return labels_; }  // by entry
   int label(int entry) const { return labels_[static_cast<std::size_t>(entry)]; }
+
+  // All entries of a label, the last first.
+  std::vector<int> EntriesOf(int label) const;
 
   // Learns one image: its pattern, and a label >= 0 (its entry's number where none is given).
   // Returns the entry. Throws Error on a pattern of another network.
@@ -74,6 +78,8 @@ class Memory {
   std::vector<BlockView> blocks_;
   std::vector<int> first_entry_;  // by block
   std::vector<int> labels_;       // by entry
+  std::vector<int> last_of_;      // by label: its last entry, -1: none
+  std::vector<int> before_;       // by entry: the one before it with the same label, -1: none
   std::vector<Words> owned_;
   bool last_is_owned_ = false;
 };

@@ -38,6 +38,9 @@ TEST(Memory, SearchesBlocksOfOthersInPlaceAndNumbersOn) {
   EXPECT_EQ(memory.entries(), 7);
   EXPECT_EQ(memory.labels(), 8);
   EXPECT_EQ(memory.blocks()[1].words, words.data());
+  EXPECT_EQ(memory.EntriesOf(4), (std::vector<int>{4, 2, 1}));
+  EXPECT_EQ(memory.EntriesOf(3), std::vector<int>{});
+  EXPECT_EQ(memory.EntriesOf(8), std::vector<int>{});
   const std::vector<int> labels = {7, 4, 4, 2, 4, 5, 6};
   const std::vector<std::uint64_t> seeds = {100, 0, 1, 2, 101, 0, 1};
   for (int i = 0; i < 7; ++i) {

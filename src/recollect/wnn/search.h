@@ -43,4 +43,10 @@ std::vector<Recollection> RecollectBatch(const Memory& memory,
                                          std::span<const std::span<const std::uint64_t>> patterns,
                                          ThreadPool& pool, const SearchOptions& options = {});
 
+// The answers of all neurons, before votes are counted. first_entry: what number the memory's entry
+// 0 goes by. Searches of the slices of a larger memory meet by the minimum of their answers.
+std::vector<Answer> AskAll(const Memory& memory, std::span<const std::uint64_t> pattern,
+                           ThreadPool& pool, const SearchOptions& options = {},
+                           int first_entry = 0);
+
 }  // namespace recollect::wnn

@@ -49,7 +49,7 @@ void Tally::Nominate() {
 void Tally::Add(int label) {
   const auto i = static_cast<std::size_t>(label);
   ++read_;
-  ++votes_[i];
+  if (votes_[i]++ == 0) voted_.push_back(label);
   const bool ahead =
       leader_ < 0 || votes_[i] > votes(leader_) || (votes_[i] == votes(leader_) && label < leader_);
   if (label != leader_ && ahead) {
@@ -76,12 +76,25 @@ void Tally::Add(int label) {
 
 bool Tally::Certain() const { return leader_ >= 0 && votes(leader_) - second_ > neurons_ - read_; }
 
-bool Tally::Confident() const {
-  if (Certain()) return true;
-  if (terms_ == 0 || for_leader_ <= for_rival_) return false;
+bool Tally::Enough(int for_rival) const {
+  if (terms_ == 0 || for_leader_ <= for_rival) return false;
   // Term t may err with a chance of error_bound / (t (t + 1)); these sum to error_bound.
   const double stake = static_cast<double>(terms_) * (terms_ + 1.0) / error_bound_;
-  return LogEvidence(for_leader_, for_rival_) >= std::log(stake);
+  return LogEvidence(for_leader_, for_rival) >= std::log(stake);
+}
+
+bool Tally::Confident() const { return Certain() || Enough(for_rival_); }
+
+bool Tally::ConfidentBut(std::span<const int> rivals) const {
+  int for_others = 0;
+  for (const int label : voted_) {
+    const auto i = static_cast<std::size_t>(label);
+    if (label == leader_ || term_of_[i] != terms_ || votes_in_term_[i] <= for_others) continue;
+    if (std::find(rivals.begin(), rivals.end(), label) == rivals.end()) {
+      for_others = votes_in_term_[i];
+    }
+  }
+  return Enough(for_others);
 }
 
 }  // namespace recollect::wnn

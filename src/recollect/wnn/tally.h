@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace recollect::wnn {
@@ -20,18 +20,24 @@ class Tally {
   // The label with most votes so far, of equals the lowest; -1 before the first vote.
   int leader() const { return leader_; }
   int votes(int label) const { return votes_[static_cast<std::size_t>(label)]; }
+  // Labels that got votes, in no order worth naming.
+  std::span<const int> voted() const { return voted_; }
 
   // The leader wins whatever the votes still to come.
   bool Certain() const;
   // The leader wins, but for a chance of at most error_bound. See docs/search.md, "Anytime".
   bool Confident() const;
+  // The same of the leader against all labels but those in `rivals`.
+  bool ConfidentBut(std::span<const int> rivals) const;
 
  private:
   void Nominate();
+  bool Enough(int for_rival) const;
 
   int neurons_;
   double error_bound_;
   std::vector<int> votes_;  // by label
+  std::vector<int> voted_;
   int read_ = 0;
   int leader_ = -1;
   int second_ = 0;  // votes of the best label but the leader

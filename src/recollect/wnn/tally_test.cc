@@ -68,7 +68,7 @@ TEST(Tally, LeaderIsAlwaysTheMostVotedTheLowestOfEquals) {
 // time is an error (of equals the lowest wins). Its share must stay below the bound.
 TEST(Tally, ErrsNoMoreOftenThanPromisedWhenLabelsTie) {
   const double bound = 0.05;
-  const int rounds = 4000;
+  const int rounds = 1000;
   Random random(2);
   for (const auto& population : {std::vector<int>{200, 200}, {60, 60, 60, 60}, {150, 151, 99}}) {
     const int neurons = std::accumulate(population.begin(), population.end(), 0);

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "commands.h"
+#include "laps.h"
+#include "recollect/benchmark/search_bench.h"
+#include "wnn_flags.h"
+
+namespace recollect::app {
+namespace {
+
+struct BenchFlags {
+  Common common;
+  LapFlags laps;
+  std::vector<std::string> live;
+  SearchBenchOptions options;
+};
+
+void RunSearch(BenchFlags flags) {
+  SearchBenchOptions& options = flags.options;
+  options.threads = flags.common.threads;
+  options.corpus.seed = options.corpus.network.seed = flags.common.seed;
+  if (!flags.laps.folders.empty()) options.laps = flags.laps.Read();
+  if (!flags.live.empty()) {
+    flags.laps.folders = flags.live;
+    options.live_laps = flags.laps.Read();
+  }
+  const nlohmann::json figures = RunSearchBench(options, TerminalProgress());
+  fmt::print("{}", DescribeSearchBench(figures));
+  WriteFigures(flags.common, figures);
+}
+
+}  // namespace
+
+void AddBench(CLI::App& app) {
+  CLI::App* bench = app.add_subcommand("bench", "Measure speed, side by side in one run");
+  bench->require_subcommand(1);
+  const auto flags = std::make_shared<BenchFlags>();
+  SearchBenchOptions& options = flags->options;
+  CLI::App* search = AddCommand(*bench, "search", "Search of the map: every kind on the same map",
+                                flags->common, [flags] { RunSearch(*flags); });
+  flags->laps.AddTo(*search, false);
+  search
+      ->add_option("--live", flags->live,
+                   "laps to look up; without: the frames of --lap between its key frames")
+      ->type_name("DIR");
+  search->add_option("--frames", options.corpus.frames, "key frames in the map")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  search->add_option("--spacing", options.corpus.spacing_m, "metres between a lap's key frames")
+      ->capture_default_str();
+  search->add_option("--checks", options.checks, "images on which early stops are checked")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  search->add_option("--rounds", options.rounds, "measurements of each kind")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  search->add_option("--error-bound", options.error_bound, "of the anytime search")
+      ->check(CLI::Range(1e-12, 0.5))
+      ->capture_default_str();
+  search->add_option("--ranks", options.ranks, "also search over so many processes")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  search->add_option("--row-limit", options.row_limit, "of Fat-Fast: entries a row; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  search->add_flag("--fatfast,!--no-fatfast", options.fat_fast, "measure Fat-Fast VG-RAM, too");
+  search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");
+  AddWnnFlags(*search, options.corpus.network);
+}
+
+}  // namespace recollect::app
