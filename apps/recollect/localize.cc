@@ -41,10 +41,22 @@ std::vector<Live> Gather(const Options& options) {
   return live;
 }
 
+// Before any work: all images are there and of the map's size.
+void CheckImages(const std::vector<Live>& live, const PinholeCamera& camera) {
+  for (const Live& one : live) {
+    const ImageInfo info = ReadImageInfo(one.image);
+    Require(info.width == camera.width && info.height == camera.height, one.image.string(),
+            fmt::format("is {}x{}, the map's images are {}x{}", info.width, info.height,
+                        camera.width, camera.height),
+            "localise with the camera that made the map");
+  }
+}
+
 void Run(const Options& options) {
   const std::vector<Live> live = Gather(options);
   ThreadPool pool(options.common.threads);
   const Map map = Map::Open(options.map);
+  CheckImages(live, map.description().camera.left);
   Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
   const ProgressSink progress = TerminalProgress();
 
@@ -52,7 +64,7 @@ void Run(const Options& options) {
   std::vector<SE3> poses;
   nlohmann::json figures = nlohmann::json::array();
   for (const Live& one : live) {
-    const Localization answer = localizer.Localize(ReadColour(one.image));
+    const Localization answer = localizer.Localize(ReadColour(one.image), one.image.string());
     stamped.push_back({one.time, answer.world_from_camera});
     poses.push_back(answer.world_from_camera);
     const Eigen::Vector3d p = answer.world_from_camera.translation();

@@ -16,12 +16,12 @@ Localizer::Localizer(const Map& map, cnn::PoseNetwork network, ThreadPool& pool,
   Require(map.size() > 0, "map", "has no key frames");
 }
 
-Localization Localizer::Localize(const cv::Mat& image) {
+Localization Localizer::Localize(const cv::Mat& image, const std::string& name) {
   Localization answer;
   Stopwatch step, whole;
 
   // Section III-A: the committee of neurons recollects the most similar key frame.
-  const wnn::Recollection recollection = Recollect(image);
+  const wnn::Recollection recollection = Recollect(image, name);
   answer.key_frame = recollection.winner;
   answer.confidence = recollection.confidence;
   answer.ms.recollect = step.Milliseconds();
@@ -42,10 +42,10 @@ Localization Localizer::Localize(const cv::Mat& image) {
   return answer;
 }
 
-wnn::Recollection Localizer::Recollect(const cv::Mat& image) {
+wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& name) {
   const PinholeCamera& camera = map_.description().camera.left;
   Require(image.type() == CV_8UC3 && image.cols == camera.width && image.rows == camera.height,
-          "live image",
+          name,
           fmt::format("is {}x{} with {} channels, the map's are {}x{} in colour", image.cols,
                       image.rows, image.channels(), camera.width, camera.height),
           "localise with the camera that made the map");

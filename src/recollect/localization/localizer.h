@@ -1,7 +1,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
-#include <optional>
+#include <string>
 
 #include "recollect/cnn/pose_network.h"
 #include "recollect/map/map.h"
@@ -36,11 +36,11 @@ class Localizer {
   Localizer(const Map& map, cnn::PoseNetwork network, ThreadPool& pool,
             const wnn::SearchOptions& search = {});
 
-  // image: 8-bit B, G, R of the map camera's size (live images of another size throw Error).
-  Localization Localize(const cv::Mat& image);
+  // image: 8-bit B, G, R of the map camera's size; throws Error calling it `name` otherwise.
+  Localization Localize(const cv::Mat& image, const std::string& name = "live image");
 
   // The two halves of Localize, for judging each by itself.
-  wnn::Recollection Recollect(const cv::Mat& image);
+  wnn::Recollection Recollect(const cv::Mat& image, const std::string& name = "live image");
   SE3 Relate(const cv::Mat& live, const cv::Mat& key_frame);
 
   const Map& map() const { return map_; }

@@ -147,6 +147,12 @@ TEST_F(MapTest, RefusesBadLapsAndLeavesTheMapAlone) {
   EXPECT_THROW(AddToMap(file, other, pool_), Error);
   EXPECT_THROW(CreateMap(file, other, options_, pool_), Error);
   EXPECT_THROW(CreateMap(file, {}, options_, pool_), Error);
+  try {
+    CreateMap("/proc/new.map", laps, options_, pool_);
+    FAIL() << "a map in /proc";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find("/proc/new.map: "), 0u) << error.what();
+  }
   ExpectHolds(Map::Open(file), laps);
   EXPECT_EQ(ReadFile(file), before);
 }

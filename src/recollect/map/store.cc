@@ -41,12 +41,14 @@ Bytes AsBytes(const std::string& key) { return std::as_bytes(std::span(key)); }
 
 // An environment with one transaction and its tables, closed in the right order.
 struct Session {
-  fs::path file;
+  fs::path path;  // what is opened
+  fs::path file;  // what errors call it
   MDB_env* env = nullptr;
   MDB_txn* txn = nullptr;
   std::array<MDB_dbi, kTableNames.size()> tables{};
 
-  Session(const fs::path& path, bool writing, bool create) : file(path) {
+  Session(const fs::path& opened, const fs::path& shown, bool writing, bool create)
+      : path(opened), file(shown) {
     try {
       Open(writing, create);
     } catch (...) {
@@ -60,22 +62,22 @@ struct Session {
 
   void Open(bool writing, bool create) {
     if (!create) {
-      Require(fs::exists(file), file.string(), "no such map",
+      Require(fs::exists(path), file.string(), "no such map",
               "make one with: recollect map create");
-      Require(fs::is_regular_file(file), file.string(), "is no file, so no map");
-      Require(fs::file_size(file) > 0, file.string(), "is empty, so no map");
+      Require(fs::is_regular_file(path), file.string(), "is no file, so no map");
+      Require(fs::file_size(path) > 0, file.string(), "is empty, so no map");
     }
     Check(mdb_env_create(&env), file, "opening");
     Check(mdb_env_set_maxdbs(env, kTableNames.size()), file, "opening");
     Check(mdb_env_set_mapsize(env, kAddressSpace), file, "opening");
     const unsigned flags = MDB_NOSUBDIR | MDB_NOTLS | (writing ? 0u : MDB_RDONLY);
-    int code = mdb_env_open(env, file.c_str(), flags, 0644);
+    int code = mdb_env_open(env, path.c_str(), flags, 0644);
     if (!writing && (code == EACCES || code == EROFS)) {
       // No right to keep the lock file beside the map: then nobody here can be writing it either.
       Close();
       Check(mdb_env_create(&env), file, "opening");
       Check(mdb_env_set_maxdbs(env, kTableNames.size()), file, "opening");
-      code = mdb_env_open(env, file.c_str(), flags | MDB_NOLOCK, 0644);
+      code = mdb_env_open(env, path.c_str(), flags | MDB_NOLOCK, 0644);
     }
     Check(code, file, "opening");
     CheckWhole();
@@ -98,8 +100,8 @@ struct Session {
     Check(mdb_env_info(env, &info), file, "opening");
     Check(mdb_env_stat(env, &stat), file, "opening");
     const std::size_t pages = info.me_last_pgno + 1;
-    Require(fs::file_size(file) >= pages * stat.ms_psize || info.me_last_txnid == 0, file.string(),
-            fmt::format("is cut short: {} bytes of {}", fs::file_size(file), pages * stat.ms_psize),
+    Require(fs::file_size(path) >= pages * stat.ms_psize || info.me_last_txnid == 0, file.string(),
+            fmt::format("is cut short: {} bytes of {}", fs::file_size(path), pages * stat.ms_psize),
             "copy or create the map again");
   }
 
@@ -118,7 +120,7 @@ struct StoreReader::State : Session {
 };
 
 StoreReader::StoreReader(const fs::path& file)
-    : state_(std::make_unique<State>(file, /*writing=*/false, /*create=*/false)) {}
+    : state_(std::make_unique<State>(file, file, /*writing=*/false, /*create=*/false)) {}
 StoreReader::~StoreReader() = default;
 StoreReader::StoreReader(StoreReader&&) noexcept = default;
 StoreReader& StoreReader::operator=(StoreReader&&) noexcept = default;
@@ -139,14 +141,15 @@ std::size_t StoreReader::Count(Table table) const {
 
 const fs::path& StoreReader::file() const { return state_->file; }
 
-std::size_t StoreReader::FileBytes() const { return fs::file_size(state_->file); }
+std::size_t StoreReader::FileBytes() const { return fs::file_size(state_->path); }
 
 struct StoreWriter::State : Session {
   using Session::Session;
 };
 
-StoreWriter::StoreWriter(const fs::path& file, bool create)
-    : state_(std::make_unique<State>(file, /*writing=*/true, create)) {}
+StoreWriter::StoreWriter(const fs::path& file, bool create, const fs::path& shown)
+    : state_(
+          std::make_unique<State>(file, shown.empty() ? file : shown, /*writing=*/true, create)) {}
 StoreWriter::~StoreWriter() = default;
 
 void StoreWriter::Put(Table table, std::uint32_t key, Bytes value) {
@@ -181,7 +184,7 @@ void CreateStore(const fs::path& file, const std::function<void(StoreWriter&)>& 
       fs::remove(lock, ignored);
     };
     try {
-      StoreWriter writer(temporary, /*create=*/true);
+      StoreWriter writer(temporary, /*create=*/true, file);
       fill(writer);
       writer.Commit();
     } catch (...) {

@@ -42,8 +42,10 @@ class StoreReader {
 // it is destroyed without. One writer at a time; a second waits.
 class StoreWriter {
  public:
-  // Opens an existing store, or makes an empty one where `create` is set.
-  StoreWriter(const std::filesystem::path& file, bool create);
+  // Opens an existing store, or makes an empty one where `create` is set. Errors name `shown`,
+  // which is `file` unless that is only a temporary name.
+  StoreWriter(const std::filesystem::path& file, bool create,
+              const std::filesystem::path& shown = {});
   ~StoreWriter();
   StoreWriter(const StoreWriter&) = delete;
   StoreWriter& operator=(const StoreWriter&) = delete;
