@@ -1,6 +1,6 @@
 # Everything a fresh Debian 12 machine needs is one word away: make demo, make test.
 PACKAGES = build-essential cmake ninja-build ccache pkg-config \
-  libtorch-dev libopencv-dev libeigen3-dev libopenblas0-pthread libcli11-dev libspdlog-dev \
+  libtorch-dev libopencv-dev libembree-dev libeigen3-dev libopenblas0-pthread libcli11-dev libspdlog-dev \
   nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev libgloo-dev libfaiss-dev \
   gnuplot-nox
 RECOLLECT = build/recollect

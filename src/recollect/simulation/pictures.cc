@@ -1,0 +1,66 @@
+#include "recollect/simulation/pictures.h"
+
+#include <optional>
+
+#include "recollect/simulation/noise.h"
+
+namespace recollect::simulation {
+namespace {
+
+Texture PaintVariation() {
+  return Texture::Paint(256, [](float u, float v) {
+    const float a = Fbm(u * 8, v * 8, 8, 6, 911, 0.6F);
+    const float b = Fbm(u * 5, v * 5, 5, 5, 913, 0.6F);
+    return Texel{{SmoothStep(0.2F, 0.8F, a), SmoothStep(0.2F, 0.8F, b), a * b}, 1};
+  });
+}
+
+Texture PaintPicture(int index) {
+  if (index == kPictures) return PaintVariation();
+  const auto picture = static_cast<Picture>(index);
+  if (picture == Picture::kPlain) {
+    return Texture::Paint(1, [](float, float) { return Texel{Color::Ones(), 1}; });
+  }
+  switch (picture) {
+    case Picture::kWindows:
+    case Picture::kSigns:
+    case Picture::kPosters:
+    case Picture::kTrafficSigns:
+      return PaintSheet(picture);
+    case Picture::kBroadLeaves:
+    case Picture::kFineLeaves:
+    case Picture::kPalmFrond:
+    case Picture::kLongLeaves:
+    case Picture::kBlossom:
+    case Picture::kHedge:
+    case Picture::kGrassTuft:
+    case Picture::kWireMesh:
+    case Picture::kForest:
+    case Picture::kBark:
+      return PaintPlant(picture);
+    case Picture::kAsphalt:
+    case Picture::kSlabs:
+    case Picture::kPavers:
+    case Picture::kGrass:
+    case Picture::kEarth:
+    case Picture::kGravel:
+    case Picture::kRoadPaint:
+      return PaintGround(picture);
+    default:
+      return PaintWall(picture);
+  }
+}
+
+}  // namespace
+
+PictureSet::PictureSet(ThreadPool& pool) {
+  std::vector<std::optional<Texture>> painted(kPictures + 1);
+  pool.For(kPictures + 1, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      painted[static_cast<std::size_t>(i)] = PaintPicture(static_cast<int>(i));
+    }
+  });
+  for (auto& texture : painted) textures_.push_back(std::move(*texture));
+}
+
+}  // namespace recollect::simulation
