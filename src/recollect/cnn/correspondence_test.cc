@@ -102,7 +102,7 @@ TEST(ProjectCells, FollowsThePointsAndMarksWhatIsSeen) {
   EXPECT_FALSE(flow.visible[0][16].item<bool>());  // depth unknown
 }
 
-class CorrespondenceLossTest : public testing::Test {
+class CorrespondenceLossTest : public ::testing::Test {
  protected:
   TrueFlow Truth() const {
     TrueFlow truth;

@@ -80,7 +80,7 @@ TEST(Transform, Gradient) {
       {torch::randn({2, 3, 4}, torch::kDouble), torch::randn({2, 3, 5}, torch::kDouble)});
 }
 
-class ProjectionLossTest : public testing::Test {
+class ProjectionLossTest : public ::testing::Test {
  protected:
   const torch::Tensor truth_ = Se3Layer(torch::randn({2, 6}, torch::kDouble) * 0.3);
   const torch::Tensor points_ =

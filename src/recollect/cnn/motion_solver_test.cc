@@ -13,7 +13,7 @@ torch::Tensor Project(const torch::Tensor& motion, const torch::Tensor& points) 
   return moved.slice(1, 0, 2) / moved.slice(1, 2, 3);
 }
 
-class MotionSolverTest : public testing::Test {
+class MotionSolverTest : public ::testing::Test {
  protected:
   MotionSolverTest() {
     torch::manual_seed(9);

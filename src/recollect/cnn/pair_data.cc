@@ -9,6 +9,7 @@
 #include "recollect/dataset/image.h"
 #include "recollect/dataset/pairing.h"
 #include "recollect/dataset/sampling.h"
+#include "recollect/depth/motion.h"
 
 namespace recollect::cnn {
 namespace {
@@ -30,8 +31,34 @@ cv::Mat SampleDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
   return out;
 }
 
+// The frame nearest in the drive that was taken at least a metre away; `index` where there is none.
+std::size_t Neighbour(const Lap& lap, std::size_t index) {
+  constexpr double kApart = 1;
+  constexpr std::size_t kReach = 10;
+  const Eigen::Vector3d here = lap.WorldFromCamera(index).translation();
+  const auto apart = [&](std::size_t other) {
+    return (lap.WorldFromCamera(other).translation() - here).norm() >= kApart;
+  };
+  for (std::size_t step = 1; step <= kReach; ++step) {
+    if (step <= index && apart(index - step)) return index - step;
+    if (index + step < lap.frames.size() && apart(index + step)) return index + step;
+  }
+  return index;
+}
+
+cv::Mat DepthByMotion(const Lap& lap, std::size_t index, const Crop& crop,
+                      const PinholeCamera& crop_camera, const cv::Mat& image) {
+  const std::size_t other = Neighbour(lap, index);
+  if (other == index) return {};
+  const cv::Mat other_image =
+      crop.Apply(ReadColour(lap.frames[other].left), lap.frames[other].left.string());
+  const SE3 other_from_image = lap.WorldFromCamera(other).Inverse() * lap.WorldFromCamera(index);
+  return SampleDepth(DepthFromMotion(image, other_image, other_from_image, crop_camera),
+                     crop_camera, crop_camera);
+}
+
 StoredFrame LoadFrame(const Lap& lap, std::size_t index, const Crop& crop,
-                      const PinholeCamera& crop_camera) {
+                      const PinholeCamera& crop_camera, bool depth_from_motion) {
   const Frame& frame = lap.frames[index];
   Require(!frame.left.empty(), lap.folder.string(), "has no images");
   StoredFrame stored;
@@ -42,6 +69,8 @@ StoredFrame LoadFrame(const Lap& lap, std::size_t index, const Crop& crop,
     const PinholeCamera depth_camera =
         DepthCamera(lap.camera.left, depth.cols, depth.rows, frame.depth.string());
     stored.depth = SampleDepth(depth, depth_camera, crop_camera);
+  } else if (depth_from_motion) {
+    stored.depth = DepthByMotion(lap, index, crop, crop_camera, stored.image);
   }
   return stored;
 }
@@ -101,7 +130,8 @@ PairData LoadPairs(std::span<const Lap> live, std::span<const Lap> key, const Cr
     pool.For(std::min(kBlock, count - from), 1, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = from + begin; i < from + end; ++i) {
         const auto& [lap, frame] = wanted[static_cast<std::size_t>(i)];
-        data.frames[static_cast<std::size_t>(i)] = LoadFrame(*lap, frame, crop, data.camera);
+        data.frames[static_cast<std::size_t>(i)] =
+            LoadFrame(*lap, frame, crop, data.camera, options.depth_from_motion);
       }
     });
     Report(progress, "read images", std::min(from + kBlock, count), count);

@@ -32,6 +32,9 @@ struct PairOptions {
   double max_distance_m = 5;
   double max_angle_rad = 0.6;  // between the headings
   double key_spacing_m = 0;  // key frames are thinned to one every so many metres; 0: all are used
+  // Frames without a depth image get theirs from the nearest frame of the drive a metre or more
+  // away (DepthFromMotion); otherwise they have none.
+  bool depth_from_motion = false;
 };
 
 // Pairs with the frames they are made of.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <opencv2/core.hpp>
 #include <set>
 
 #include "recollect/core/error.h"
@@ -74,7 +75,15 @@ TrainingData LoadTrainingData(std::span<const Lap> laps, std::span<const Lap> va
   const Crop crop = DefaultCrop(options.network, camera.width, camera.height);
   TrainingData data;
   for (const Lap& lap : laps) data.laps.push_back(lap.name);
-  data.train = LoadPairs(laps, laps, crop, options.pairs, pool, progress);
+  PairOptions train_pairs = options.pairs;
+  train_pairs.depth_from_motion = true;  // the losses are over points of the live image
+  data.train = LoadPairs(laps, laps, crop, train_pairs, pool, progress);
+  const bool any_depth =
+      std::any_of(data.train.frames.begin(), data.train.frames.end(), [](const StoredFrame& frame) {
+        return !frame.depth.empty() && cv::countNonZero(frame.depth > 0) > 0;
+      });
+  Require(any_depth, laps.front().folder.string(),
+          "has no depth images, and its images move too little to tell depth from");
   if (valid.empty()) {
     std::tie(data.train, data.valid) =
         SplitRoad(data.train, options.validation_share, options.seed);
