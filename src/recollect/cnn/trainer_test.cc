@@ -1,0 +1,156 @@
+#include "recollect/cnn/trainer.h"
+
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+
+#include <cmath>
+
+#include "recollect/cnn/adam.h"
+#include "recollect/cnn/checkpoint.h"
+#include "recollect/cnn/loader.h"
+#include "recollect/cnn/pair_network.h"
+#include "recollect/cnn/test_street.h"
+#include "recollect/cnn/threads.h"
+#include "recollect/cnn/training_loss.h"
+#include "recollect/core/error.h"
+#include "recollect/core/files.h"
+
+namespace recollect::cnn {
+namespace {
+
+// Eight pairs, seen over and over, must be learnt by heart: a network, a loss or an optimiser that
+// is wired wrongly stays where it began.
+TEST(Overfit, EightPairsAreLearntByHeart) {
+  const TestStreet street(std::vector<testing::StreetDrive>{{.length_m = 10}});
+  ThreadPool pool(1);
+  SetThreads(1);
+  PairData data = LoadPairs(street.laps(), street.laps(), Crop{160, 120, 0, 12, 160, 96}, {}, pool);
+  std::vector<Pair> few;
+  for (std::size_t i = 0; i < 8; ++i) few.push_back(data.pairs[i * data.pairs.size() / 8]);
+  data.pairs = few;
+
+  torch::manual_seed(1);
+  const auto network = MakeNetwork(NetworkKind::kCompact, data.camera);
+  const TrainingLoss loss(data.camera, TrainOptions::Compact().loss);
+  Adam adam(*network, {.gradient_limit = 5});
+  Loader loader(data, {.batch = 8});
+  double first = 0, last = 0;
+  constexpr int kSteps = 80;
+  for (int step = 0; step < kSteps; ++step) {
+    const Batch batch = loader.Next();
+    const Losses losses = loss(network->forward(batch.live, batch.key), batch);
+    losses.total.backward();
+    adam.Step(1e-3);
+    last = losses.projection.item<double>();
+    if (step == 0) first = last;
+  }
+  EXPECT_LT(last, 0.4 * first) << "from " << first << " m";
+}
+
+TEST(AdamTest, FollowsItsDefinition) {
+  torch::nn::Linear layer(1, 1);
+  double mean = 0, square = 0, expected = layer->weight.item<double>();
+  Adam adam(*layer, {});
+  for (int step = 1; step <= 3; ++step) {
+    (layer->weight * layer->weight).sum().backward();
+    const double gradient = 2 * layer->weight.item<double>();
+    mean = 0.9 * mean + 0.1 * gradient;
+    square = 0.999 * square + 0.001 * gradient * gradient;
+    expected -= 0.01 * (mean / (1 - std::pow(0.9, step))) /
+                (std::sqrt(square / (1 - std::pow(0.999, step))) + 1e-8);
+    adam.Step(0.01);
+    EXPECT_NEAR(layer->weight.item<double>(), expected, 1e-6);
+    EXPECT_FALSE(layer->weight.grad().defined());
+  }
+}
+
+struct PowerCut {};
+
+class TrainerTest : public ::testing::Test {
+ protected:
+  TrainOptions Options(const std::string& name) const {
+    TrainOptions options = TrainOptions::Compact();
+    options.epochs = 2;
+    options.batch = 4;
+    options.validate_steps = 2;
+    options.validation_pairs = 2;
+    options.pairs.max_distance_m = 1.6;
+    options.threads = 1;  // exact equality is promised for one number of threads
+    options.out = street_.File(name + ".model");
+    options.csv = street_.File(name + ".csv");
+    return options;
+  }
+  TrainResult Run(const TrainOptions& options, const ProgressSink& progress = {}) {
+    return Train(std::span(street_.laps()).first(1), std::span(street_.laps()).last(1), options,
+                 progress);
+  }
+  void RunUntilPowerCut(const TrainOptions& options) {
+    const auto cut = [](const Progress& progress) {
+      if (progress.stage == "train" && progress.done == 3) throw PowerCut();
+    };
+    EXPECT_THROW(Run(options, cut), PowerCut);
+    ASSERT_TRUE(std::filesystem::exists(CheckpointPath(options)));
+  }
+
+  TestStreet street_{{{.length_m = 8}, {.length_m = 8, .lateral_m = 0.5, .seed = 2}}};
+};
+
+TEST_F(TrainerTest, WritesTheBestModelAndItsCurve) {
+  const TrainOptions options = Options("plain");
+  const TrainResult result = Run(options);
+  ASSERT_FALSE(result.curve.empty());
+  double best = 1e9;
+  for (const CurvePoint& point : result.curve) best = std::min(best, point.valid_position_m);
+  const ModelInfo info = PoseNetwork::Load(options.out, 1).info();
+  EXPECT_EQ(info.validation.position_mean_m, best);
+  EXPECT_EQ(info.laps, std::vector<std::string>{"lap-0"});
+  EXPECT_EQ(info.validated_on, "live frames of lap-1");
+  EXPECT_EQ(result.curve.back().step, result.steps);
+  EXPECT_NE(ReadFile(options.csv).find("valid_position_m"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(CheckpointPath(options)));
+}
+
+TEST_F(TrainerTest, ResumedTrainingIsAsIfItHadNeverStopped) {
+  const TrainResult expected = Run(Options("whole"));
+  ASSERT_GT(expected.steps, 3);
+
+  TrainOptions broken = Options("broken");
+  RunUntilPowerCut(broken);
+  broken.resume = true;
+  const TrainResult resumed = Run(broken);
+  EXPECT_EQ(resumed.steps, expected.steps);
+  EXPECT_EQ(resumed.model.steps, expected.model.steps);
+  ASSERT_EQ(resumed.curve.size(), expected.curve.size());
+  for (std::size_t i = 0; i < expected.curve.size(); ++i) {
+    EXPECT_EQ(resumed.curve[i].loss, expected.curve[i].loss) << i;
+    EXPECT_EQ(resumed.curve[i].valid_position_m, expected.curve[i].valid_position_m) << i;
+  }
+}
+
+TEST_F(TrainerTest, RefusesForeignCheckpoints) {
+  TrainOptions options = Options("other");
+  RunUntilPowerCut(options);
+  options.resume = true;
+  options.learning_rate *= 2;
+  EXPECT_THROW(Run(options), Error);
+  AtomicWrite(CheckpointPath(options), "rubbish");
+  EXPECT_THROW(Run(options), Error);
+}
+
+TEST_F(TrainerTest, RefusesOptionsOutOfRange) {
+  const auto refuses = [&](auto change) {
+    TrainOptions options = Options("wrong");
+    change(options);
+    EXPECT_THROW(Run(options), Error);
+  };
+  refuses([](TrainOptions& o) { o.epochs = 0; });
+  refuses([](TrainOptions& o) { o.batch = -1; });
+  refuses([](TrainOptions& o) { o.learning_rate = 0; });
+  refuses([](TrainOptions& o) { o.minutes = -1; });
+  refuses([](TrainOptions& o) { o.validation_share = 1; });
+  refuses([](TrainOptions& o) { o.out.clear(); });
+  EXPECT_THROW(Train({}, {}, Options("none")), Error);
+}
+
+}  // namespace
+}  // namespace recollect::cnn
