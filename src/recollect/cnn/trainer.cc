@@ -91,8 +91,8 @@ class Trainer {
 
   bool Finished() const {
     if (state_.step >= total_steps_) return true;
-    // The last validation comes out of the budget too.
-    if (options_.minutes > 0 && Seconds() + validation_seconds_ > 60 * options_.minutes) {
+    // The last validation comes out of the budget too; it may take longer than the one before.
+    if (options_.minutes > 0 && Seconds() + 1.5 * validation_seconds_ > 60 * options_.minutes) {
       return true;
     }
     return options_.patience > 0 && state_.without_gain >= options_.patience;
