@@ -41,6 +41,7 @@ class Asking {
   // Makes a neuron one that was not asked.
   void Forget(int neuron) { answers_[static_cast<std::size_t>(neuron)] = kNoAnswer; }
 
+  const ScanQuery& query() const { return query_; }
   Answer answer(int neuron) const { return answers_[static_cast<std::size_t>(neuron)]; }
   // Entry, numbered as in the memory, of a neuron that has answered.
   int entry(int neuron) const { return AnswerEntry(answer(neuron)) - first_entry_; }

@@ -97,15 +97,20 @@ AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int coun
   for (int n = begin; n < end; ++n) {
     const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
     const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    constexpr std::ptrdiff_t kAhead = 4 * 64;  // words; beyond the block's end it does no harm
     __m512i rows0[kLanes], rows1[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
       rows0[lane] = Load(low + kLane * lane);
       rows1[lane] = Load(high + kLane * lane);
+      __builtin_prefetch(low + kLane * lane + kAhead);
+      __builtin_prefetch(high + kLane * lane + kAhead);
     }
     for (int q = 0; q < count; ++q) {
       const ScanQuery& query = queries[q];
       const __m512i q0 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords]));
       const __m512i q1 = _mm512_set1_epi64(static_cast<long long>(query.pattern[n * kWords + 1]));
+      // Distances fit into 32 bits, of which the upper half is 0 on both sides: the minimum of 32
+      // bits does, and costs half of that of 64.
       __m512i least = _mm512_set1_epi64(2 * kSynapses);
       for (int lane = 0; lane < kLanes; ++lane) {
         least = _mm512_min_epu64(

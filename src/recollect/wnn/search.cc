@@ -1,6 +1,7 @@
 #include "recollect/wnn/search.h"
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <utility>
 
@@ -13,15 +14,16 @@
 namespace recollect::wnn {
 namespace {
 
-constexpr int kPilot = 64;   // neurons that are asked first; the rest get hints from them
-constexpr int kHints = 4;    // entries in a hint
-constexpr int kGrain = 128;  // neurons that a thread takes at a time
+constexpr int kPilot = 64;         // neurons that are asked first; the rest get hints from them
+constexpr std::size_t kHints = 4;  // entries in a hint
+constexpr int kGrain = 128;        // neurons that a thread takes at a time
 constexpr int kSmallGrain = 8;
 constexpr std::size_t kMaxBatch = 16;
+constexpr std::size_t kBatchHints = 2;
 
 // The entries behind the last kPilot answers, those of the most voted labels.
 std::vector<int> HintsFrom(const Memory& memory, const Asking& asking, const Tally& tally,
-                           int asked) {
+                           int asked, std::size_t count) {
   std::vector<std::pair<int, int>> by_votes;  // votes of the label, entry
   for (int n = std::max(0, asked - kPilot); n < asked; ++n) {
     const int entry = asking.entry(n);
@@ -31,9 +33,18 @@ std::vector<int> HintsFrom(const Memory& memory, const Asking& asking, const Tal
   std::vector<int> hints;
   for (const auto& [votes, entry] : by_votes) {
     if (hints.empty() || hints.back() != entry) hints.push_back(entry);
-    if (hints.size() == kHints) break;
+    if (hints.size() == count) break;
   }
   return hints;
+}
+
+// Asks the first neurons and gives all others the entries they hint at for provisional answers.
+void AskPilot(const Memory& memory, Asking& asking, int pilot) {
+  Tally tally(memory.labels(), memory.neurons(), 1);
+  asking.Ask(0, pilot, kSmallGrain);
+  for (int n = 0; n < pilot; ++n) tally.Add(memory.label(asking.entry(n)));
+  asking.SetHints(HintsFrom(memory, asking, tally, pilot, kBatchHints));
+  asking.Peek(pilot, memory.neurons());
 }
 
 // Neurons are asked in the order of their numbers, which is random over the image: a few at
@@ -48,7 +59,7 @@ std::optional<Verdict> AskUntil(const Memory& memory, Asking& asking,
   // Half of the chance to err is for the count, half for the runoff.
   Tally tally(memory.labels(), neurons, options.error_bound / 2);
   for (int asked = 0; asked < neurons;) {
-    if (asked > 0) asking.SetHints(HintsFrom(memory, asking, tally, asked));
+    if (asked > 0) asking.SetHints(HintsFrom(memory, asking, tally, asked, kHints));
     const bool all = options.stop == Stop::kNever && asked > 0;
     const int end = all ? neurons : std::min(neurons, asked + std::max(kPilot, asked / 16));
     asking.Ask(asked, end, all ? kGrain : kSmallGrain);
@@ -96,24 +107,26 @@ std::vector<Recollection> RecollectBatch(const Memory& memory,
                                          ThreadPool& pool, const SearchOptions& options) {
   const Kernel& kernel = KernelOf(options);
   const std::vector<ScanBlock> blocks = BlocksOf(memory, options);
+  const int neurons = memory.neurons(), pilot = std::min(kPilot, neurons);
   std::vector<Recollection> results;
   for (std::size_t first = 0; first < patterns.size(); first += kMaxBatch) {
-    const auto batch = patterns.subspan(first, std::min(kMaxBatch, patterns.size() - first));
-    std::vector<std::vector<Answer>> answers(batch.size());
+    std::deque<Asking> batch;
     std::vector<ScanQuery> queries;
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      CheckPattern(memory, batch[i]);
-      answers[i].assign(static_cast<std::size_t>(memory.neurons()), kNoAnswer);
-      queries.push_back({batch[i].data(), TieBreak(options.tie_seed, batch[i]), answers[i].data()});
+    for (std::size_t i = first; i < std::min(patterns.size(), first + kMaxBatch); ++i) {
+      batch.emplace_back(memory, patterns[i], pool, options);
+      queries.push_back(batch.back().query());
     }
-    pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (const ScanBlock& block : blocks) {
-        kernel.scan_batch(block, queries.data(), static_cast<int>(queries.size()),
-                          static_cast<int>(begin), static_cast<int>(end));
-      }
-    });
-    for (auto& answer : answers) {
-      results.push_back(CountVotes(memory.entry_labels(), std::move(answer)));
+    if (!blocks.empty()) {
+      for (Asking& asking : batch) AskPilot(memory, asking, pilot);
+      pool.For(neurons - pilot, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        const int from = pilot + static_cast<int>(begin), to = pilot + static_cast<int>(end);
+        for (const ScanBlock& block : blocks) {
+          kernel.scan_batch(block, queries.data(), static_cast<int>(queries.size()), from, to);
+        }
+      });
+    }
+    for (Asking& asking : batch) {
+      results.push_back(CountVotes(memory.entry_labels(), asking.TakeAnswers()));
     }
   }
   return results;
