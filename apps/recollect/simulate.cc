@@ -28,11 +28,15 @@ void RunSimulate(SimulateFlags flags) {
   }
   const simulation::SimulateResult result = Simulate(o, TerminalProgress());
 
-  nlohmann::json figures = {{"rendered", result.rendered}, {"kept", result.kept}, {"seconds", result.seconds}};
+  nlohmann::json figures = {
+      {"rendered", result.rendered}, {"kept", result.kept}, {"seconds", result.seconds}};
   fmt::print("lap  frames  weather   sun\n");
   for (const auto& lap : result.laps) {
-    fmt::print(" {:02}  {:6}  {:8}  {:3.0f} degrees\n", lap.number, lap.frames, lap.weather, lap.sun_elevation);
-    figures["laps"].push_back({{"number", lap.number}, {"frames", lap.frames}, {"weather", lap.weather},
+    fmt::print(" {:02}  {:6}  {:8}  {:3.0f} degrees\n", lap.number, lap.frames, lap.weather,
+               lap.sun_elevation);
+    figures["laps"].push_back({{"number", lap.number},
+                               {"frames", lap.frames},
+                               {"weather", lap.weather},
                                {"sun_elevation_deg", lap.sun_elevation}});
   }
   if (result.rendered > 0) {
@@ -51,27 +55,43 @@ void RunSimulate(SimulateFlags flags) {
 void AddSimulate(CLI::App& app) {
   auto flags = std::make_shared<SimulateFlags>();
   simulation::SimulateOptions& o = flags->options;
-  CLI::App* command = AddCommand(app, "simulate", "Render drives through a simulated campus as a folder of laps",
-                                 flags->common, [flags] { RunSimulate(*flags); });
-  command->add_option("--route", o.route, "ring, ufes:DIR (recorded poses) or FILE.tum")->capture_default_str();
-  command->add_option("--laps", o.laps, "laps to render, such as 1,3-5, or all")->capture_default_str();
-  command->add_option("--spacing", o.spacing, "metres between frames")->capture_default_str();
-  command->add_option("--every", o.every, "render only every n-th of these frames")->capture_default_str();
-  command->add_option("--out", o.out, "folder of laps to make or go on with")->type_name("DIR")->required();
-  command->add_flag("--stereo", o.stereo, "right images as well");
-  command->add_option("--baseline", o.baseline, "metres between the cameras")->capture_default_str();
-  command->add_flag("--depth", o.depth, "true depth as well");
-  command->add_option("--depth-step", o.depth_step, "depth of every n-th pixel of every n-th row, 1 or 2")
+  CLI::App* command =
+      AddCommand(app, "simulate", "Render drives through a simulated campus as a folder of laps",
+                 flags->common, [flags] { RunSimulate(*flags); });
+  command->add_option("--route", o.route, "ring, ufes:DIR (recorded poses) or FILE.tum")
       ->capture_default_str();
-  command->add_option("--change", o.change.strength, "how much days differ: 0 not at all, 1 as real ones")
+  command->add_option("--laps", o.laps, "laps to render, such as 1,3-5, or all")
+      ->capture_default_str();
+  command->add_option("--spacing", o.spacing, "metres between frames")->capture_default_str();
+  command->add_option("--every", o.every, "render only every n-th of these frames")
+      ->capture_default_str();
+  command->add_option("--out", o.out, "folder of laps to make or go on with")
+      ->type_name("DIR")
+      ->required();
+  command->add_flag("--stereo", o.stereo, "right images as well");
+  command->add_option("--baseline", o.baseline, "metres between the cameras")
+      ->capture_default_str();
+  command->add_flag("--depth", o.depth, "true depth as well");
+  command
+      ->add_option("--depth-step", o.depth_step,
+                   "depth of every n-th pixel of every n-th row, 1 or 2")
+      ->capture_default_str();
+  command
+      ->add_option("--change", o.change.strength,
+                   "how much days differ: 0 not at all, 1 as real ones")
       ->capture_default_str();
   command->add_option("--fixed", flags->fixed, "what does not change between days")
       ->check(CLI::IsMember({"light", "structures", "traffic", "season"}));
-  command->add_option("--weather", flags->weather, "day (drawn for each), clear, fair, overcast, rain or mist")
+  command
+      ->add_option("--weather", flags->weather,
+                   "day (drawn for each), clear, fair, overcast, rain or mist")
       ->capture_default_str();
-  command->add_option("--faults", o.faults, "camera faults: none, all, or a list such as black,frozen=0.05")
+  command
+      ->add_option("--faults", o.faults,
+                   "camera faults: none, all, or a list such as black,frozen=0.05")
       ->capture_default_str();
-  command->add_option("--rolling-shutter", o.rolling_shutter, "seconds from the first row to the last")
+  command
+      ->add_option("--rolling-shutter", o.rolling_shutter, "seconds from the first row to the last")
       ->capture_default_str();
   command->add_option("--jpeg-quality", o.jpeg_quality, "10 to 100")->capture_default_str();
 }

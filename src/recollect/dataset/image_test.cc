@@ -81,8 +81,8 @@ TEST(Image, RefusesWhatItCannotRead) {
     folder.WriteImage(name, 64, 48);
     folder.Write(name, folder.Read(name).substr(0, folder.Read(name).size() * 2 / 3));
   }
-  folder.WriteImage("stub.png", 64, 48);
-  folder.Write("stub.png", folder.Read("stub.png").substr(0, 20));
+  folder.WriteImage("cut.png", 64, 48);
+  folder.Write("cut.png", folder.Read("cut.png").substr(0, 20));
   folder.WriteImage("deep.png", 4, 4, CV_16UC1);
   folder.WriteImage("shallow.png", 4, 4, CV_8UC1);
 
@@ -96,7 +96,7 @@ TEST(Image, RefusesWhatItCannotRead) {
   EXPECT_EQ(depth("shallow.png"),
             "shallow.png: depth has 8 bits and 1 channels where 16 and 1 belong");
   EXPECT_EQ(info("missing.png"), "missing.png: no such file");
-  EXPECT_EQ(info("stub.png"), "stub.png: is not an image that can be decoded");
+  EXPECT_EQ(info("cut.png"), "cut.png: is not an image that can be decoded");
   EXPECT_EQ(info("text.png"), "text.png: is not an image that can be decoded");
 }
 

@@ -48,7 +48,8 @@ TEST(Pipeline, LocalisesALapThatWasNotMapped) {
   const Evaluation evaluation = Evaluate(localizer, live);
   SCOPED_TRACE(FormatTable(evaluation));
   ASSERT_EQ(evaluation.frames.size(), live.frames.size());
-  // A straight street of few houses is hard for the committee; by chance it would be a quarter.
+  // A straight street of like houses is hard for the committee: it measured 0.68 and 0.77 when
+  // these bounds were set. Guessing gives about 1 in 12 places and 1 in 5 of the frames.
   EXPECT_GE(evaluation.within_labels.at(0), 0.5);
   EXPECT_GE(evaluation.within_frames.at(5), 0.6);
   const double retrieval = Find(evaluation.rows_good_retrieval, "retrieval").position_m.mean;

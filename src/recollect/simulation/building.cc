@@ -9,15 +9,18 @@
 namespace recollect::simulation {
 namespace {
 
-constexpr float kFoot = -1.5F;     // walls reach so far into the ground
-constexpr float kReveal = 0.16F;   // depth of a window in its wall
+constexpr float kFoot = -1.5F;    // walls reach so far into the ground
+constexpr float kReveal = 0.16F;  // depth of a window in its wall
 
 // An upright wall from one ground point to another; coordinates (along, up, out of the wall).
 class Wall {
  public:
   Wall(const Vec2& from, const Vec2& to, MeshBuilder& build)
-      : from_(from), along_((to - from).normalized()), out_(along_.y(), -along_.x()),
-        length_((to - from).norm()), build_(build) {}
+      : from_(from),
+        along_((to - from).normalized()),
+        out_(along_.y(), -along_.x()),
+        length_((to - from).norm()),
+        build_(build) {}
 
   float length() const { return length_; }
   Vec3 At(float x, float z, float out) const {
@@ -60,7 +63,8 @@ class Builder {
 
   void Block(const Vec2& low, const Vec2& high, int floors, bool main) {
     const float top = static_cast<float>(floors) * plan_.floor_height;
-    const std::array<Vec2, 4> corners = {low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())};
+    const std::array<Vec2, 4> corners = {low, Vec2(high.x(), low.y()), high,
+                                         Vec2(low.x(), high.y())};
     for (std::size_t i = 0; i < 4; ++i) {
       Wall wall(corners[i], corners[(i + 1) % 4], build_);
       Facade(wall, floors, main && i == 0, i % 2 == 1);
@@ -149,7 +153,8 @@ class Builder {
     wall.Reveal(x0, x1, sill, head, kReveal);
     Pane(wall, x0, x1, sill, head, -kReveal);
     build_.Use(plan_.accent);
-    if (plan_.windows == Style::kPunched) wall.Block(x0 - 0.08F, x1 + 0.08F, sill - 0.1F, sill, 0.1F);
+    if (plan_.windows == Style::kPunched)
+      wall.Block(x0 - 0.08F, x1 + 0.08F, sill - 0.1F, sill, 0.1F);
     if (floor > 0 && random_.Uniform() < plan_.balcony_share) Balcony(wall, x, z);
     if (random_.Uniform() < 0.05) AirConditioner(wall, x0 + 0.5F, sill - 0.75F);
     if (floor == 0 && plan_.shopfront) {
@@ -236,13 +241,15 @@ class Builder {
       for (int j = 0; j <= rows; ++j) {
         const Vec2 t(static_cast<float>(i) / static_cast<float>(columns),
                      static_cast<float>(j) / static_cast<float>(rows));
-        const Vec2 p = low + Vec2::Constant(0.4F) + (high - low - Vec2::Constant(0.8F)).cwiseProduct(t);
+        const Vec2 p =
+            low + Vec2::Constant(0.4F) + (high - low - Vec2::Constant(0.8F)).cwiseProduct(t);
         build_.Box({p.x() - 0.2F, p.y() - 0.2F, kFoot}, {p.x() + 0.2F, p.y() + 0.2F, h});
       }
     }
     build_.Use(plan_.accent);
     const Vec2 inner = (high - low) * 0.22F;
-    build_.Box({low.x() + inner.x(), low.y() + inner.y(), kFoot}, {high.x() - inner.x(), high.y() - inner.y(), h});
+    build_.Box({low.x() + inner.x(), low.y() + inner.y(), kFoot},
+               {high.x() - inner.x(), high.y() - inner.y(), h});
   }
 
   void Roof(const Vec2& low, const Vec2& high, float z) {
@@ -252,13 +259,19 @@ class Builder {
     const float rise = size.y() * Draw(random_, 0.16, 0.3);
     build_.Use(plan_.roof_material);
     switch (plan_.roof) {
-      case BuildingPlan::Roof::kFlat: FlatRoof(low, high, z); return;
+      case BuildingPlan::Roof::kFlat:
+        FlatRoof(low, high, z);
+        return;
       case BuildingPlan::Roof::kGable:
-        build_.Quad({l.x(), l.y(), z}, {h.x(), l.y(), z}, {h.x(), mid.y(), z + rise}, {l.x(), mid.y(), z + rise});
-        build_.Quad({h.x(), h.y(), z}, {l.x(), h.y(), z}, {l.x(), mid.y(), z + rise}, {h.x(), mid.y(), z + rise});
+        build_.Quad({l.x(), l.y(), z}, {h.x(), l.y(), z}, {h.x(), mid.y(), z + rise},
+                    {l.x(), mid.y(), z + rise});
+        build_.Quad({h.x(), h.y(), z}, {l.x(), h.y(), z}, {l.x(), mid.y(), z + rise},
+                    {h.x(), mid.y(), z + rise});
         build_.Use(plan_.wall);
-        build_.Triangle({high.x(), low.y(), z}, {high.x(), high.y(), z}, {high.x(), mid.y(), z + rise});
-        build_.Triangle({low.x(), high.y(), z}, {low.x(), low.y(), z}, {low.x(), mid.y(), z + rise});
+        build_.Triangle({high.x(), low.y(), z}, {high.x(), high.y(), z},
+                        {high.x(), mid.y(), z + rise});
+        build_.Triangle({low.x(), high.y(), z}, {low.x(), low.y(), z},
+                        {low.x(), mid.y(), z + rise});
         return;
       case BuildingPlan::Roof::kHip: {
         const float in = std::min(size.x(), size.y()) / 2;
@@ -290,9 +303,11 @@ class Builder {
         for (int i = 0; i < teeth; ++i) {
           const float x0 = low.x() + step * static_cast<float>(i), x1 = x0 + step;
           build_.Use(plan_.roof_material);
-          build_.Quad({x0, low.y(), z}, {x1, low.y(), z + 1.8F}, {x1, high.y(), z + 1.8F}, {x0, high.y(), z});
+          build_.Quad({x0, low.y(), z}, {x1, low.y(), z + 1.8F}, {x1, high.y(), z + 1.8F},
+                      {x0, high.y(), z});
           build_.Use(stock_.windows);
-          build_.Quad({x1, low.y(), z}, {x1, high.y(), z}, {x1, high.y(), z + 1.8F}, {x1, low.y(), z + 1.8F});
+          build_.Quad({x1, low.y(), z}, {x1, high.y(), z}, {x1, high.y(), z + 1.8F},
+                      {x1, low.y(), z + 1.8F});
           build_.Use(plan_.wall);
           build_.Triangle({x0, low.y(), z}, {x1, low.y(), z}, {x1, low.y(), z + 1.8F});
           build_.Triangle({x1, high.y(), z}, {x0, high.y(), z}, {x1, high.y(), z + 1.8F});
@@ -304,11 +319,13 @@ class Builder {
   void FlatRoof(const Vec2& low, const Vec2& high, float z) {
     const float over = plan_.bands ? 0.5F : 0.05F, parapet = Draw(random_, 0.3, 1.1);
     build_.Use(plan_.accent);
-    build_.Box({low.x() - over, low.y() - over, z}, {high.x() + over, high.y() + over, z + parapet}, true);
+    build_.Box({low.x() - over, low.y() - over, z}, {high.x() + over, high.y() + over, z + parapet},
+               true);
     build_.Use(stock_.old_concrete);
     const Vec2 size = high - low;
     for (int i = 0; i < 4; ++i) {  // tanks, stair heads, machines
-      const Vec2 p = low + size.cwiseProduct(Vec2(Draw(random_, 0.15, 0.85), Draw(random_, 0.25, 0.75)));
+      const Vec2 p =
+          low + size.cwiseProduct(Vec2(Draw(random_, 0.15, 0.85), Draw(random_, 0.25, 0.75)));
       const float half = Draw(random_, 0.5, 1.6), top = z + parapet + Draw(random_, 0.8, 2.6);
       if (i == 0) {
         build_.Tube({p.x(), p.y(), z + parapet}, {p.x(), p.y(), top}, half, half, 12);
@@ -336,7 +353,8 @@ void BuildBuilding(const BuildingPlan& plan, const Stock& stock, MeshBuilder& bu
   // An L: a part of the front stands back, and is lower.
   const float cut = plan.width * 0.35F, back = plan.depth * 0.35F;
   builder.Block(low, Vec2(high.x() - cut, high.y()), plan.floors, true);
-  builder.Block(Vec2(high.x() - cut, back), high, std::max(plan.stilts ? 2 : 1, plan.floors - 1), false);
+  builder.Block(Vec2(high.x() - cut, back), high, std::max(plan.stilts ? 2 : 1, plan.floors - 1),
+                false);
 }
 
 }  // namespace recollect::simulation

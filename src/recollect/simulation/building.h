@@ -16,10 +16,10 @@ struct BuildingPlan {
   Windows windows = Windows::kPunched;
   Roof roof = Roof::kFlat;
   float window_width = 1.4F, window_height = 1.4F, sill = 0.95F, bay = 3;
-  bool stilts = false;     // the ground floor open, on columns
-  bool fins = false;       // upright concrete blades before the windows
-  bool louvres = false;    // level ones
-  bool bands = false;      // floors marked by strips of the accent
+  bool stilts = false;                       // the ground floor open, on columns
+  bool fins = false;                         // upright concrete blades before the windows
+  bool louvres = false;                      // level ones
+  bool bands = false;                        // floors marked by strips of the accent
   float balcony_share = 0, blank_share = 0;  // of the window bays
   bool portico = false, shopfront = false, sign = true, mural = false, wing = false;
   std::uint64_t seed = 0;

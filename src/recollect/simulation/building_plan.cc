@@ -24,9 +24,10 @@ int DrawWall(Random& random, Random& paint, Palette& palette) {
   double u = random.Uniform();
   std::size_t k = 0;
   while (k + 1 < kKinds.size() && u > kKinds[k].share) u -= kKinds[k++].share;
-  const Color tint = kKinds[k].painted ? DrawPaint(paint)
-                                       : Color(Color::Constant(Draw(random, 0.75, 1.3)));
-  return palette.Add({.picture = kKinds[k].picture, .tint = tint,
+  const Color tint =
+      kKinds[k].painted ? DrawPaint(paint) : Color(Color::Constant(Draw(random, 0.75, 1.3)));
+  return palette.Add({.picture = kKinds[k].picture,
+                      .tint = tint,
                       .tile = kKinds[k].tile * Draw(random, 0.85, 1.2),
                       .gloss = kKinds[k].picture == Picture::kTiles ? 0.2F : 0.0F,
                       .patchiness = Draw(random, 0.25, 0.6)});
@@ -46,8 +47,8 @@ BuildingPlan DrawBuilding(std::uint64_t seed, int repaints, float width, float d
                      : static_cast<int>(1 + random.Index(random.Uniform() < 0.2 ? 5 : 3));
   plan.floor_height = Draw(random, 2.9, 3.9);
   plan.wall = DrawWall(random, paint, palette);
-  plan.accent = palette.Add({.picture = Picture::kPlaster, .tint = DrawPaint(paint), .tile = 3.1F,
-                             .patchiness = 0.3F});
+  plan.accent = palette.Add(
+      {.picture = Picture::kPlaster, .tint = DrawPaint(paint), .tile = 3.1F, .patchiness = 0.3F});
   using Windows = BuildingPlan::Windows;
   using Roof = BuildingPlan::Roof;
   plan.windows = static_cast<Windows>(random.Index(5));
@@ -93,7 +94,8 @@ BuildingPlan DrawBuilding(std::uint64_t seed, int repaints, float width, float d
   }
   const bool tiled = plan.roof == Roof::kGable || plan.roof == Roof::kHip;
   plan.roof_material = palette.Add({.picture = tiled ? Picture::kRoofTiles : Picture::kMetal,
-                                    .tint = Color::Constant(Draw(random, 0.7, 1.3)), .tile = 3.0F,
+                                    .tint = Color::Constant(Draw(random, 0.7, 1.3)),
+                                    .tile = 3.0F,
                                     .patchiness = 0.5F});
   plan.stilts = plan.floors >= 2 && random.Uniform() < 0.22;
   plan.fins = random.Uniform() < 0.22;

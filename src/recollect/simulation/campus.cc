@@ -5,7 +5,8 @@
 namespace recollect::simulation {
 
 Campus::Campus(const Route& route, std::uint64_t campus_seed)
-    : seed(campus_seed), streets(LayStreets(route, SubSeed(seed, 1))),
+    : seed(campus_seed),
+      streets(LayStreets(route, SubSeed(seed, 1))),
       site(route, streets, SubSeed(seed, 2)) {}
 
 CampusDay BuildCampus(const Campus& campus, const Day& day) {
@@ -15,7 +16,8 @@ CampusDay BuildCampus(const Campus& campus, const Day& day) {
   const Plants plants(SubSeed(campus.seed, 3), stock, world);
   result.vehicles = Vehicles(SubSeed(campus.seed, 4), stock, world);
   Site site = campus.site.Copy();
-  Planner planner(campus.streets, site, day, SubSeed(campus.seed, 5), stock, plants, result.vehicles, world);
+  Planner planner(campus.streets, site, day, SubSeed(campus.seed, 5), stock, plants,
+                  result.vehicles, world);
   LineStreets(planner);
   FillParcels(planner);
   BuildRoads(campus.streets, campus.site, day, SubSeed(campus.seed, 6), stock, world);

@@ -15,8 +15,12 @@ namespace {
 constexpr double kYear = 365.25 * 86400;
 
 constexpr std::array<std::pair<Weather, const char*>, 6> kNames = {
-    {{Weather::kByDay, "day"}, {Weather::kClear, "clear"}, {Weather::kFair, "fair"},
-     {Weather::kOvercast, "overcast"}, {Weather::kRain, "rain"}, {Weather::kMist, "mist"}}};
+    {{Weather::kByDay, "day"},
+     {Weather::kClear, "clear"},
+     {Weather::kFair, "fair"},
+     {Weather::kOvercast, "overcast"},
+     {Weather::kRain, "rain"},
+     {Weather::kMist, "mist"}}};
 
 Weather DrawWeather(double u) {
   if (u < 0.3) return Weather::kClear;
@@ -105,11 +109,21 @@ Day MakeDay(double unix_time, const Change& change, Weather weather, std::uint64
   };
   day.visibility = draw(2, 4000, 14000);
   switch (day.weather) {
-    case Weather::kClear: day.cloud = draw(3, 0.0, 0.15); break;
-    case Weather::kFair: day.cloud = draw(3, 0.25, 0.55); break;
-    case Weather::kOvercast: day.cloud = draw(3, 0.88, 1.0); break;
-    case Weather::kRain: day.cloud = 1, day.wetness = 1, day.visibility = draw(2, 800, 2500); break;
-    default: day.cloud = 0.8F, day.wetness = 0.4F, day.visibility = draw(2, 250, 700); break;
+    case Weather::kClear:
+      day.cloud = draw(3, 0.0, 0.15);
+      break;
+    case Weather::kFair:
+      day.cloud = draw(3, 0.25, 0.55);
+      break;
+    case Weather::kOvercast:
+      day.cloud = draw(3, 0.88, 1.0);
+      break;
+    case Weather::kRain:
+      day.cloud = 1, day.wetness = 1, day.visibility = draw(2, 800, 2500);
+      break;
+    default:
+      day.cloud = 0.8F, day.wetness = 0.4F, day.visibility = draw(2, 250, 700);
+      break;
   }
   // With the light switched off it is always 10:00 of an equinox.
   const double clock = lit ? unix_time : UnixTime(2016, 9, 22, 13, 0);
@@ -120,7 +134,8 @@ Day MakeDay(double unix_time, const Change& change, Weather weather, std::uint64
   // Rain falls from November to March; September is the driest.
   if (change.season) {
     const double phase = 2 * std::numbers::pi * (unix_time - UnixTime(2016, 9, 5, 0, 0)) / kYear;
-    day.dryness = static_cast<float>((0.5 + 0.5 * std::cos(phase)) * std::min(1.0, change.strength));
+    day.dryness =
+        static_cast<float>((0.5 + 0.5 * std::cos(phase)) * std::min(1.0, change.strength));
   }
   return day;
 }

@@ -43,11 +43,11 @@ struct Day {
   double unix_time = 0;
   Weather weather = Weather::kFair;
   Vec3 to_sun = Vec3::UnitZ();
-  float cloud = 0.3F;        // share of the sky, 0..1
-  float wetness = 0;         // 0 dry, 1 wet road
-  float visibility = 8000;   // metres until haze leaves 5 % contrast
-  float dryness = 0;         // 0: rains just over, lush; 1: end of the dry winter
-  std::uint64_t seed = 0;    // of all that differs between days for no reason
+  float cloud = 0.3F;       // share of the sky, 0..1
+  float wetness = 0;        // 0 dry, 1 wet road
+  float visibility = 8000;  // metres until haze leaves 5 % contrast
+  float dryness = 0;        // 0: rains just over, lush; 1: end of the dry winter
+  std::uint64_t seed = 0;   // of all that differs between days for no reason
   Change change;
 
   // How often the thing `id`, changing `rate` times a year at strength 1, has changed since the

@@ -32,8 +32,10 @@ TEST(Sun, CulminatesOverTheCampusAtTheSolstice) {
 }
 
 TEST(Sun, RisesInTheEastAndSetsInTheWest) {
-  const double morning = SunAt(UnixTime(2016, 9, 22, 9, 30), kCampusLatitude, kCampusLongitude).azimuth;
-  const double evening = SunAt(UnixTime(2016, 9, 22, 20, 0), kCampusLatitude, kCampusLongitude).azimuth;
+  const double morning =
+      SunAt(UnixTime(2016, 9, 22, 9, 30), kCampusLatitude, kCampusLongitude).azimuth;
+  const double evening =
+      SunAt(UnixTime(2016, 9, 22, 20, 0), kCampusLatitude, kCampusLongitude).azimuth;
   EXPECT_NEAR(morning / kDegree, 87, 8);
   EXPECT_NEAR(evening / kDegree, -87, 8);
   // World x is north and y west: the morning sun shines from negative y.

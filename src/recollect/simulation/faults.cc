@@ -12,9 +12,13 @@ namespace recollect::simulation {
 namespace {
 
 constexpr std::array<std::pair<Fault, const char*>, 7> kNames = {
-    {{Fault::kNone, "none"}, {Fault::kDropped, "dropped"}, {Fault::kFrozen, "frozen"},
-     {Fault::kBlack, "black"}, {Fault::kOverexposed, "overexposed"},
-     {Fault::kHalfOccluded, "occluded"}, {Fault::kBlurred, "blurred"}}};
+    {{Fault::kNone, "none"},
+     {Fault::kDropped, "dropped"},
+     {Fault::kFrozen, "frozen"},
+     {Fault::kBlack, "black"},
+     {Fault::kOverexposed, "overexposed"},
+     {Fault::kHalfOccluded, "occluded"},
+     {Fault::kBlurred, "blurred"}}};
 constexpr double kUsualShare = 0.02;
 constexpr std::int64_t kRun = 3;  // frames that share a fault
 
@@ -49,7 +53,8 @@ FaultPlan ParseFaults(std::string_view text) {
             "take dropped, frozen, black, overexposed, occluded, blurred, all or none");
     if (name.size() < item.size()) {
       const std::string_view number = item.substr(name.size() + 1);
-      const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), entry.share);
+      const auto [end, error] =
+          std::from_chars(number.data(), number.data() + number.size(), entry.share);
       Require(error == std::errc() && end == number.data() + number.size() && entry.share >= 0 &&
                   entry.share <= 0.9,
               "faults", fmt::format("'{}' is no share between 0 and 0.9", number));
@@ -57,7 +62,8 @@ FaultPlan ParseFaults(std::string_view text) {
     sum += entry.share;
     plan.entries.push_back(entry);
   }
-  Require(sum <= 0.9, "faults", fmt::format("the shares sum to {:.2f}", sum), "keep them below 0.9");
+  Require(sum <= 0.9, "faults", fmt::format("the shares sum to {:.2f}", sum),
+          "keep them below 0.9");
   return plan;
 }
 

@@ -9,7 +9,7 @@
 namespace recollect::simulation {
 namespace {
 
-constexpr int kBlock = 4;       // pixels that share a motion vector, either way
+constexpr int kBlock = 4;  // pixels that share a motion vector, either way
 constexpr float kFarthest = 200;
 
 // Samples of a normal distribution, drawn once: a random index gives a random number.
@@ -24,14 +24,17 @@ const std::array<float, 4096>& Bells() {
 }
 
 // Averages each pixel along the path that its point takes in the image during the exposure.
-std::vector<Color> Blur(const Rendering& r, const PinholeCamera& camera, const SE3& start_from_end) {
+std::vector<Color> Blur(const Rendering& r, const PinholeCamera& camera,
+                        const SE3& start_from_end) {
   std::vector<Color> out = r.radiance;
   const SE3 end_from_start = start_from_end.Inverse();
   for (int by = 0; by < r.height; by += kBlock) {
     for (int bx = 0; bx < r.width; bx += kBlock) {
-      const int cx = std::min(bx + kBlock / 2, r.width - 1), cy = std::min(by + kBlock / 2, r.height - 1);
+      const int cx = std::min(bx + kBlock / 2, r.width - 1),
+                cy = std::min(by + kBlock / 2, r.height - 1);
       const float depth = r.Depth(cx, cy);
-      const Eigen::Vector3d p = camera.Unproject(cx, cy, depth > 0 ? static_cast<double>(depth) : 1e5);
+      const Eigen::Vector3d p =
+          camera.Unproject(cx, cy, depth > 0 ? static_cast<double>(depth) : 1e5);
       const Eigen::Vector3d q = end_from_start * p;
       if (q.z() < 0.1) continue;
       const Eigen::Vector2f move = (camera.Project(q) - Eigen::Vector2d(cx, cy)).cast<float>();
@@ -75,13 +78,14 @@ cv::Mat Develop(const Rendering& r, const PinholeCamera& camera, const SE3& star
   for (const Color& c : light) sum += static_cast<double>(std::min(2.5F, c.mean()));
   const double mean = sum / static_cast<double>(light.size());
   const float gain = extra_gain * static_cast<float>(std::min(
-      static_cast<double>(film.longest_gain), static_cast<double>(film.brightness) / std::max(mean, 1e-6)));
+                                      static_cast<double>(film.longest_gain),
+                                      static_cast<double>(film.brightness) / std::max(mean, 1e-6)));
   constexpr int kTones = 4096;
   std::array<std::uint8_t, kTones + 1> tone{};
   for (int i = 0; i <= kTones; ++i) {
     const float v = static_cast<float>(i) / kTones;
-    tone[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
-        std::lround(255 * std::pow(v, 1 / film.gamma)));
+    tone[static_cast<std::size_t>(i)] =
+        static_cast<std::uint8_t>(std::lround(255 * std::pow(v, 1 / film.gamma)));
   }
   const auto& bells = Bells();
   const Color scale = film.white_balance * gain;
@@ -112,7 +116,8 @@ cv::Mat DepthImage(const Rendering& r, int step) {
     for (int x = 0; x < image.cols; ++x) {
       const float depth = r.Depth(x * step, y * step);
       image(y, x) = depth > 0 && depth < kFarthest
-                        ? static_cast<std::uint16_t>(std::lround(depth * 100)) : std::uint16_t{0};
+                        ? static_cast<std::uint16_t>(std::lround(depth * 100))
+                        : std::uint16_t{0};
     }
   }
   return image;

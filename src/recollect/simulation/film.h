@@ -9,14 +9,14 @@ namespace recollect::simulation {
 
 // How the camera turns light into a picture. Differs a little from day to day.
 struct Film {
-  float brightness = 0.20F;         // the automatic exposure's mean level, linear
-  float longest_gain = 3;           // more light than this the exposure cannot make: dusk stays dark
+  float brightness = 0.20F;  // the automatic exposure's mean level, linear
+  float longest_gain = 3;    // more light than this the exposure cannot make: dusk stays dark
   Color white_balance = Color::Ones();
   float gamma = 2.2F;
-  float vignette = 0.25F;           // light lost in the corners
-  float shot_noise = 0.012F;        // standard deviation at full white, linear
-  float read_noise = 0.0025F;       // in black
-  double exposure = 0.004;          // seconds the shutter is open
+  float vignette = 0.25F;      // light lost in the corners
+  float shot_noise = 0.012F;   // standard deviation at full white, linear
+  float read_noise = 0.0025F;  // in black
+  double exposure = 0.004;     // seconds the shutter is open
 };
 
 // The camera's settings on a day; with the light switched off, always the same.

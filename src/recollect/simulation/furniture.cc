@@ -76,15 +76,18 @@ void BuildTrafficSign(int sign, const Stock& stock, MeshBuilder& build) {
                 Vec3(-0.045F, 0.36F, 2.71F), low, high);
   }
   build.Use(stock.steel);
-  build.Quad(rim[0] + Vec3(0.01F, 0, 0), rim[static_cast<std::size_t>(3 * sides / 4)] + Vec3(0.01F, 0, 0),
+  build.Quad(rim[0] + Vec3(0.01F, 0, 0),
+             rim[static_cast<std::size_t>(3 * sides / 4)] + Vec3(0.01F, 0, 0),
              rim[static_cast<std::size_t>(sides / 2)] + Vec3(0.01F, 0, 0),
              rim[static_cast<std::size_t>(sides / 4)] + Vec3(0.01F, 0, 0));
 }
 
-void BuildBoard(bool poster, int cell, float width, float height, const Stock& stock, MeshBuilder& build) {
+void BuildBoard(bool poster, int cell, float width, float height, const Stock& stock,
+                MeshBuilder& build) {
   build.Use(stock.steel);
   const float w = width / 2, foot = poster ? 1.2F : 0.7F;
-  for (const float y : {-w * 0.8F, w * 0.8F}) build.Tube({0.06F, y, -0.3F}, {0.06F, y, foot + height}, 0.06F, 0.06F, 6);
+  for (const float y : {-w * 0.8F, w * 0.8F})
+    build.Tube({0.06F, y, -0.3F}, {0.06F, y, foot + height}, 0.06F, 0.06F, 6);
   build.Box({0.005F, -w, foot}, {0.05F, w, foot + height}, true);
   build.Use(poster ? stock.posters : stock.signs);
   Vec2 low, size;
@@ -93,9 +96,12 @@ void BuildBoard(bool poster, int cell, float width, float height, const Stock& s
     low = Cell(cell, kPosterCells) / kPosterCells;
   } else {
     size = Vec2(1.0F / kSignColumns, 1.0F / kSignRows);
-    low = Vec2(static_cast<float>(cell % kSignColumns), static_cast<float>(cell / kSignColumns % kSignRows)).cwiseProduct(size);
+    low = Vec2(static_cast<float>(cell % kSignColumns),
+               static_cast<float>(cell / kSignColumns % kSignRows))
+              .cwiseProduct(size);
   }
-  build.Mapped({0, w, foot}, {0, -w, foot}, {0, -w, foot + height}, {0, w, foot + height}, low, low + size);
+  build.Mapped({0, w, foot}, {0, -w, foot}, {0, -w, foot + height}, {0, w, foot + height}, low,
+               low + size);
 }
 
 void BuildBench(const Stock& stock, MeshBuilder& build) {
@@ -133,28 +139,35 @@ void BuildBusStop(Random& random, const Stock& stock, MeshBuilder& build) {
   build.Box({-w, -0.75F, 0.4F}, {w, -0.68F, 2.2F}, true);
   build.Use(stock.posters);
   const Vec2 low = Cell(static_cast<int>(random.Index(16)), kPosterCells) / kPosterCells;
-  build.Mapped({-w + 1.1F, -0.66F, 0.7F}, {-w + 0.1F, -0.66F, 0.7F}, {-w + 0.1F, -0.66F, 2}, {-w + 1.1F, -0.66F, 2},
-               low, low + Vec2::Constant(1.0F / kPosterCells));
+  build.Mapped({-w + 1.1F, -0.66F, 0.7F}, {-w + 0.1F, -0.66F, 0.7F}, {-w + 0.1F, -0.66F, 2},
+               {-w + 1.1F, -0.66F, 2}, low, low + Vec2::Constant(1.0F / kPosterCells));
   build.Use(stock.wood);
   build.Box({-w * 0.5F, -0.6F, 0.42F}, {w * 0.8F, -0.2F, 0.48F}, true);
 }
 
 void BuildKiosk(Random& random, Palette& palette, const Stock& stock, MeshBuilder& build) {
-  const int wall = palette.Add({.picture = random.Uniform() < 0.5 ? Picture::kMetal : Picture::kPlaster,
-                                .tint = DrawPaint(random), .tile = 2, .patchiness = 0.3F});
-  const int cloth = palette.Add({.picture = Picture::kCloth, .tint = DrawPaint(random), .tile = 1.4F});
+  const int wall =
+      palette.Add({.picture = random.Uniform() < 0.5 ? Picture::kMetal : Picture::kPlaster,
+                   .tint = DrawPaint(random),
+                   .tile = 2,
+                   .patchiness = 0.3F});
+  const int cloth =
+      palette.Add({.picture = Picture::kCloth, .tint = DrawPaint(random), .tile = 1.4F});
   const float w = Draw(random, 1.2, 2), h = Draw(random, 2.3, 2.8);
   build.Use(wall);
   build.Box({-w, -1.3F, 0}, {w, 1.3F, h});
   build.Use(cloth);
-  build.Quad({w, 1.3F, h}, {-w, 1.3F, h}, {-w - 0.1F, 2.6F, h - 0.55F}, {w + 0.1F, 2.6F, h - 0.55F});
+  build.Quad({w, 1.3F, h}, {-w, 1.3F, h}, {-w - 0.1F, 2.6F, h - 0.55F},
+             {w + 0.1F, 2.6F, h - 0.55F});
   build.Use(stock.dark);
   build.Box({-w + 0.3F, 1.29F, 1.05F}, {w - 0.3F, 1.31F, 2.05F}, true);
   build.Use(stock.signs);
   const Vec2 size(1.0F / kSignColumns, 1.0F / kSignRows);
   const int cell = static_cast<int>(random.Index(32));
-  const Vec2 low = Vec2(static_cast<float>(cell % 2), static_cast<float>(cell / 2)).cwiseProduct(size);
-  build.Mapped({w * 0.9F, 1.35F, h}, {-w * 0.9F, 1.35F, h}, {-w * 0.9F, 1.35F, h + w * 0.45F}, {w * 0.9F, 1.35F, h + w * 0.45F}, low, low + size);
+  const Vec2 low =
+      Vec2(static_cast<float>(cell % 2), static_cast<float>(cell / 2)).cwiseProduct(size);
+  build.Mapped({w * 0.9F, 1.35F, h}, {-w * 0.9F, 1.35F, h}, {-w * 0.9F, 1.35F, h + w * 0.45F},
+               {w * 0.9F, 1.35F, h + w * 0.45F}, low, low + size);
 }
 
 void BuildWaterTower(Random& random, const Stock& stock, MeshBuilder& build) {
@@ -162,7 +175,8 @@ void BuildWaterTower(Random& random, const Stock& stock, MeshBuilder& build) {
   build.Use(stock.old_concrete);
   for (int i = 0; i < 5; ++i) {
     const float a = 1.2566F * static_cast<float>(i);
-    build.Tube({r * std::cos(a), r * std::sin(a), -1}, {r * 0.8F * std::cos(a), r * 0.8F * std::sin(a), h}, 0.2F, 0.18F, 6, false);
+    build.Tube({r * std::cos(a), r * std::sin(a), -1},
+               {r * 0.8F * std::cos(a), r * 0.8F * std::sin(a), h}, 0.2F, 0.18F, 6, false);
   }
   build.Use(random.Uniform() < 0.5 ? stock.white : stock.rust);
   build.Tube({0, 0, h - 0.8F}, {0, 0, h}, 0.4F, r * 1.15F, 16, false);
@@ -173,7 +187,8 @@ void BuildWaterTower(Random& random, const Stock& stock, MeshBuilder& build) {
 void BuildScaffold(float width, float height, const Stock& stock, MeshBuilder& build) {
   build.Use(stock.steel);
   for (float y = -width / 2; y <= width / 2; y += 2) {
-    for (const float x : {0.0F, 1.2F}) build.Tube({x, y, -0.5F}, {x, y, height}, 0.04F, 0.04F, 5, false);
+    for (const float x : {0.0F, 1.2F})
+      build.Tube({x, y, -0.5F}, {x, y, height}, 0.04F, 0.04F, 5, false);
   }
   for (float z = 1.9F; z < height; z += 1.9F) {
     build.Use(stock.wood);

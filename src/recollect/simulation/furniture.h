@@ -16,7 +16,8 @@ void BuildWire(const Vec3& a, const Vec3& b, const Stock& stock, MeshBuilder& bu
 // A traffic sign (0 .. 15 of the sheet) that faces against x.
 void BuildTrafficSign(int sign, const Stock& stock, MeshBuilder& build);
 // A board on two posts with a poster or a name, `width` along y, facing against x.
-void BuildBoard(bool poster, int cell, float width, float height, const Stock& stock, MeshBuilder& build);
+void BuildBoard(bool poster, int cell, float width, float height, const Stock& stock,
+                MeshBuilder& build);
 void BuildBench(const Stock& stock, MeshBuilder& build);
 void BuildBin(int material, const Stock& stock, MeshBuilder& build);
 void BuildBollards(int count, const Stock& stock, MeshBuilder& build);

@@ -7,9 +7,16 @@ namespace recollect::simulation {
 
 LapRenderer::LapRenderer(const Campus& campus, const PictureSet& pictures, const Drive& drive,
                          const Day& day, const SimulateOptions& options)
-    : pictures_(pictures), drive_(drive), day_(day), options_(options), camera_(UfesCamera()),
-      car_from_camera_(UfesCarFromCamera()), campus_day_(BuildCampus(campus, day)),
-      scene_(campus_day_.world, pictures), sky_(day, pictures), film_(LoadFilm(day)),
+    : pictures_(pictures),
+      drive_(drive),
+      day_(day),
+      options_(options),
+      camera_(UfesCamera()),
+      car_from_camera_(UfesCarFromCamera()),
+      campus_day_(BuildCampus(campus, day)),
+      scene_(campus_day_.world, pictures),
+      sky_(day, pictures),
+      film_(LoadFilm(day)),
       traffic_(campus, campus_day_.vehicles, day, drive) {
   camera_.baseline = options.baseline;
 }
@@ -43,7 +50,8 @@ double LapRenderer::OpenSky(const Eigen::Vector3d& at) const {
   alignas(64) std::array<int, kPacket> valid;
   valid.fill(-1);
   for (int k = 0; k < kPacket; ++k) {
-    const float rise = 0.35F + 0.3F * static_cast<float>(k / 8), around = 0.785F * static_cast<float>(k);
+    const float rise = 0.35F + 0.3F * static_cast<float>(k / 8),
+                around = 0.785F * static_cast<float>(k);
     rays.org_x[k] = static_cast<float>(at.x());
     rays.org_y[k] = static_cast<float>(at.y());
     rays.org_z[k] = static_cast<float>(at.z()) + 0.3F;

@@ -14,7 +14,8 @@ constexpr const char* kDescription = "lap.txt";
 
 void RequireSame(const fs::path& folder, const std::string& description) {
   const std::string other = ReadFile(folder / kDescription);
-  Require(other == description, folder.string(), "was made with other options or by another version",
+  Require(other == description, folder.string(),
+          "was made with other options or by another version",
           "remove it or choose another folder");
 }
 
@@ -26,7 +27,8 @@ void WriteImage(const fs::path& path, const cv::Mat& image, const std::vector<in
 
 }  // namespace
 
-LapWriter::LapWriter(fs::path out, std::string name, std::string description, bool stereo, bool depth)
+LapWriter::LapWriter(fs::path out, std::string name, std::string description, bool stereo,
+                     bool depth)
     : folder_(out / name), work_(out / ("." + name + ".partial")), stereo_(stereo), depth_(depth) {
   if (fs::exists(folder_)) {
     Require(fs::exists(folder_ / kDescription), folder_.string(), "is there and no simulated lap",
@@ -41,7 +43,8 @@ LapWriter::LapWriter(fs::path out, std::string name, std::string description, bo
     AtomicWrite(work_ / kDescription, description);
   }
   std::error_code error;
-  for (const char* kind : {"image_2", "image_3", "depth"}) fs::create_directories(work_ / kind, error);
+  for (const char* kind : {"image_2", "image_3", "depth"})
+    fs::create_directories(work_ / kind, error);
   Require(!error, work_.string(), fmt::format("cannot be made ({})", error.message()));
 }
 
@@ -59,7 +62,8 @@ void LapWriter::Write(std::int64_t frame, const cv::Mat& left, const cv::Mat& ri
                       const cv::Mat& depth, int jpeg_quality) {
   const std::vector<int> jpeg = {cv::IMWRITE_JPEG_QUALITY, jpeg_quality};
   if (!right.empty()) WriteImage(Path("image_3", frame, "jpg"), right, jpeg);
-  if (!depth.empty()) WriteImage(Path("depth", frame, "png"), depth, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  if (!depth.empty())
+    WriteImage(Path("depth", frame, "png"), depth, {cv::IMWRITE_PNG_COMPRESSION, 1});
   WriteImage(Path("image_2", frame, "jpg"), left, jpeg);
 }
 
@@ -94,7 +98,8 @@ std::string KittiCalibration(const StereoCamera& camera) {
   const PinholeCamera& c = camera.left;
   for (int i = 0; i < 4; ++i) {
     const double shift = i % 2 == 1 ? -c.fx * camera.baseline : 0;
-    text += fmt::format("P{}: {} 0 {} {:.6f} 0 {} {} 0 0 0 1 0\n", i, c.fx, c.cx, shift, c.fy, c.cy);
+    text +=
+        fmt::format("P{}: {} 0 {} {:.6f} 0 {} {} 0 0 0 1 0\n", i, c.fx, c.cx, shift, c.fy, c.cy);
   }
   return text;
 }
@@ -102,8 +107,8 @@ std::string KittiCalibration(const StereoCamera& camera) {
 std::string GpsTable(const std::vector<GpsFix>& fixes) {
   std::string text;
   for (const GpsFix& fix : fixes) {
-    text += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f},{}\n", fix.time, fix.p_world.x(), fix.p_world.y(),
-                        fix.p_world.z(), fix.quality);
+    text += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f},{}\n", fix.time, fix.p_world.x(),
+                        fix.p_world.y(), fix.p_world.z(), fix.quality);
   }
   return text;
 }

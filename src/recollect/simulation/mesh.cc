@@ -44,8 +44,9 @@ void MeshBuilder::Mapped(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
   Sheet({a, b, c, d}, a, b, d, low, high);
 }
 
-void MeshBuilder::Sheet(const std::array<Vec3, 4>& corners, const Vec3& origin, const Vec3& along_to,
-                        const Vec3& up_to, const Vec2& low, const Vec2& high) {
+void MeshBuilder::Sheet(const std::array<Vec3, 4>& corners, const Vec3& origin,
+                        const Vec3& along_to, const Vec3& up_to, const Vec2& low,
+                        const Vec2& high) {
   Surface s;
   const Vec3 along = along_to - origin, up = up_to - origin;
   s.normal = along.cross(up).normalized();
@@ -79,11 +80,12 @@ void MeshBuilder::Box(const Vec3& l, const Vec3& h, bool bottom) {
 void MeshBuilder::Tube(const Vec3& a, const Vec3& b, float radius_a, float radius_b, int sides,
                        bool cap) {
   const Vec3 axis = (b - a).normalized();
-  const Vec3 x = (std::abs(axis.z()) < 0.9F ? Vec3::UnitZ() : Vec3::UnitX()).cross(axis).normalized();
+  const Vec3 x =
+      (std::abs(axis.z()) < 0.9F ? Vec3::UnitZ() : Vec3::UnitX()).cross(axis).normalized();
   const Vec3 y = axis.cross(x);
   const auto rim = [&](int i) {
-    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i % sides) /
-                        static_cast<float>(sides);
+    const float angle =
+        2 * std::numbers::pi_v<float> * static_cast<float>(i % sides) / static_cast<float>(sides);
     return Vec3(x * std::cos(angle) + y * std::sin(angle));
   };
   std::vector<Vec3> top;
@@ -116,8 +118,8 @@ void MeshBuilder::Prism(const std::vector<Vec2>& outline, float low, float high)
 void MeshBuilder::Ball(const Vec3& centre, const Vec3& half_axes, int sides) {
   const int rings = std::max(3, sides / 2);
   const auto point = [&](int ring, int side) {
-    const float lat = std::numbers::pi_v<float> *
-                      (static_cast<float>(ring) / static_cast<float>(rings) - 0.5F);
+    const float lat =
+        std::numbers::pi_v<float> * (static_cast<float>(ring) / static_cast<float>(rings) - 0.5F);
     const float lon = 2 * std::numbers::pi_v<float> * static_cast<float>(side % sides) /
                       static_cast<float>(sides);
     const Vec3 unit(std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat));

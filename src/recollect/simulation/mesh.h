@@ -59,7 +59,7 @@ class MeshBuilder {
   void Triangle(const Vec3& a, const Vec3& b, const Vec3& c) { Quad(a, b, c, c); }
   // A quad that shows the part of the texture from `low` (corner a) to `high` (corner c).
   void Mapped(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec2& low,
-               const Vec2& high);
+              const Vec2& high);
   // A quad cut out of a picture that is spread over a parallelogram in its plane, given by three
   // of its corners: `origin` shows the texture's `low`, opposite it lies `high`.
   void Sheet(const std::array<Vec3, 4>& corners, const Vec3& origin, const Vec3& along,

@@ -46,7 +46,8 @@ class Parcel {
   bool Building(float front, bool tall) {
     const std::uint64_t id = Id(tall ? 20 : 10);
     const int repaints = p_.day.Changes(SubSeed(id, 1), 0.14);
-    const BuildingPlan plan = DrawBuilding(id, repaints, std::max(9.0F, length_ - 2), 15, tall, p_.world.palette);
+    const BuildingPlan plan =
+        DrawBuilding(id, repaints, std::max(9.0F, length_ - 2), 15, tall, p_.world.palette);
     const float turn = Maybe(0.25) ? Draw(random_, -0.35, 0.35) : 0;
     const float x = Draw(random_, -1, 1) * std::max(0.0F, half_ - plan.width / 2 - 1);
     const Vec2 centre = spot_.At(x, front + plan.depth / 2);
@@ -63,13 +64,14 @@ class Parcel {
       BuildBuilding(plan, p_.stock, p_.build);
     }
     if (stage < 2) {
-      p_.Wall(spot_, {x - plan.width / 2, front - 1.4F}, {x + plan.width / 2, front - 1.4F}, 2.1F, 0.06F,
-              stage == 0 ? p_.stock.steel : p_.stock.wood);
+      p_.Wall(spot_, {x - plan.width / 2, front - 1.4F}, {x + plan.width / 2, front - 1.4F}, 2.1F,
+              0.06F, stage == 0 ? p_.stock.steel : p_.stock.wood);
       if (stage == 1) {
         p_.build.Place(place * Standing({0, -1.3F, 0}, 1.5707963F));
         BuildScaffold(plan.width, plan.height() + 1, p_.stock, p_.build);
       } else {
-        p_.Pave(spot_, {x - plan.width / 2, front}, {x + plan.width / 2, front + plan.depth}, p_.stock.earth);
+        p_.Pave(spot_, {x - plan.width / 2, front}, {x + plan.width / 2, front + plan.depth},
+                p_.stock.earth);
       }
     }
     if (!tall) Surroundings(x, front, plan.width);
@@ -77,14 +79,18 @@ class Parcel {
   }
 
   void Surroundings(float x, float front, float width) {
-    p_.Pave(spot_, {x - 1.2F, 3.2F}, {x + 1.2F, front}, Maybe(0.5) ? p_.stock.slabs : p_.stock.pavers);
-    if (Maybe(0.35)) p_.Pave(spot_, {x - width / 2, front - 3}, {x + width / 2, front}, p_.stock.slabs, 0.03F);
+    p_.Pave(spot_, {x - 1.2F, 3.2F}, {x + 1.2F, front},
+            Maybe(0.5) ? p_.stock.slabs : p_.stock.pavers);
+    if (Maybe(0.35))
+      p_.Pave(spot_, {x - width / 2, front - 3}, {x + width / 2, front}, p_.stock.slabs, 0.03F);
     for (std::uint64_t k = 0; k < 8; ++k) {
       const Vec2 at = spot_.At(Draw(random_, -half_, half_), Draw(random_, 4.5, front - 0.5));
-      p_.Plant(Maybe(0.6) ? p_.plants.bushes : (Maybe(0.5) ? p_.plants.palms : p_.plants.fine), Id(100 + k), at, 0.9F);
+      p_.Plant(Maybe(0.6) ? p_.plants.bushes : (Maybe(0.5) ? p_.plants.palms : p_.plants.fine),
+               Id(100 + k), at, 0.9F);
     }
     if (Maybe(0.4)) {
-      p_.Wall(spot_, {x + 2, front - 1.2F}, {x + width / 2, front - 1.2F}, Draw(random_, 0.5, 1.1), 0.7F, p_.stock.hedge);
+      p_.Wall(spot_, {x + 2, front - 1.2F}, {x + width / 2, front - 1.2F}, Draw(random_, 0.5, 1.1),
+              0.7F, p_.stock.hedge);
     }
     if (Maybe(0.5) && p_.Stands(Id(60), 0.12)) {
       p_.StandAt(spot_, x + 3.5F, 4.6F, Draw(random_, 2.4, 3.6));
@@ -103,24 +109,33 @@ class Parcel {
 
   const std::vector<int>& Species() {
     switch (random_.Index(6)) {
-      case 0: case 1: return p_.plants.broad;
-      case 2: return p_.plants.tall;
-      case 3: return p_.plants.palms;
-      case 4: return p_.plants.flowering;
-      default: return p_.plants.fine;
+      case 0:
+      case 1:
+        return p_.plants.broad;
+      case 2:
+        return p_.plants.tall;
+      case 3:
+        return p_.plants.palms;
+      case 4:
+        return p_.plants.flowering;
+      default:
+        return p_.plants.fine;
     }
   }
 
   void Lawn() {
     for (std::uint64_t k = 0; k < 3; ++k) {
-      p_.Plant(Species(), Id(300 + k), spot_.At(Draw(random_, -half_, half_), Draw(random_, 6, 18)), 1.2F);
+      p_.Plant(Species(), Id(300 + k), spot_.At(Draw(random_, -half_, half_), Draw(random_, 6, 18)),
+               1.2F);
     }
     for (std::uint64_t k = 0; k < 24; ++k) {
-      p_.Plant(p_.plants.tufts, Id(320 + k), spot_.At(Draw(random_, -half_, half_), Draw(random_, 4, 10)));
+      p_.Plant(p_.plants.tufts, Id(320 + k),
+               spot_.At(Draw(random_, -half_, half_), Draw(random_, 4, 10)));
     }
     if (Maybe(0.55) && p_.Claim(spot_, {-2.5F, 6}, {2.5F, 8})) {
       // Hoardings get new posters.
-      const auto poster = static_cast<int>(SubSeed(Id(61), static_cast<std::uint64_t>(p_.day.Changes(Id(61), 0.8))) % 16);
+      const auto poster = static_cast<int>(
+          SubSeed(Id(61), static_cast<std::uint64_t>(p_.day.Changes(Id(61), 0.8))) % 16);
       p_.StandAt(spot_, 0, 7, 1.5708F + Draw(random_, -0.7, 0.7));
       BuildBoard(true, poster, Draw(random_, 3, 5), Draw(random_, 2, 3.2), p_.stock, p_.build);
     }
@@ -128,22 +143,28 @@ class Parcel {
 
   void CarPark() {
     if (!p_.Claim(spot_, {-half_ + 1, 5}, {half_ - 1, 21})) return Grove(5, 20, 0.03F);
-    const int ground = Maybe(0.4) ? p_.stock.gravel
-                                  : p_.world.palette.Add({.picture = Picture::kAsphalt, .tint = Color::Constant(Draw(random_, 0.9, 1.8)),
-                                                          .tile = 3.3F, .patchiness = 0.6F, .ground = true});
+    const int ground = Maybe(0.4)
+                           ? p_.stock.gravel
+                           : p_.world.palette.Add({.picture = Picture::kAsphalt,
+                                                   .tint = Color::Constant(Draw(random_, 0.9, 1.8)),
+                                                   .tile = 3.3F,
+                                                   .patchiness = 0.6F,
+                                                   .ground = true});
     p_.Pave(spot_, {-half_ + 1, 3}, {half_ - 1, 21}, ground);
     std::uint64_t k = 0;
     for (const float y : {7.6F, 18.2F}) {
       for (float x = -half_ + 3; x < half_ - 2.5F; x += 2.6F) {
         const Vec2 at = spot_.At(x, y);
-        p_.Park(Id(400 + k++), p_.site.OnGround(at.x(), at.y(), 0.11F), spot_.heading() + 1.5708F, 0.72);
+        p_.Park(Id(400 + k++), p_.site.OnGround(at.x(), at.y(), 0.11F), spot_.heading() + 1.5708F,
+                0.72);
         p_.build.Place(Standing(p_.site.OnGround(at.x(), at.y(), 0.12F), spot_.heading()));
         p_.build.Use(p_.stock.white_paint);
         p_.build.Quad({1.25F, -2.4F, 0}, {1.35F, -2.4F, 0}, {1.35F, 2.4F, 0}, {1.25F, 2.4F, 0});
       }
     }
     for (std::uint64_t t = 0; t < 5; ++t) {
-      p_.Plant(Maybe(0.5) ? p_.plants.fine : p_.plants.broad, Id(440 + t), spot_.At(Draw(random_, -half_, half_), 23.5F));
+      p_.Plant(Maybe(0.5) ? p_.plants.fine : p_.plants.broad, Id(440 + t),
+               spot_.At(Draw(random_, -half_, half_), 23.5F));
     }
   }
 
@@ -151,18 +172,24 @@ class Parcel {
     const float y = Draw(random_, 4.4, 7), height = Draw(random_, 1.1, 2.6);
     if (p_.Claim(spot_, {-half_ + 0.5F, y - 0.4F}, {half_ - 0.5F, y + 0.4F})) {
       Random paint(SubSeed(Id(62), static_cast<std::uint64_t>(p_.day.Changes(Id(62), 0.2))));
-      const Picture kinds[] = {Picture::kPlaster, Picture::kStone, Picture::kBrick, Picture::kConcrete};
+      const Picture kinds[] = {Picture::kPlaster, Picture::kStone, Picture::kBrick,
+                               Picture::kConcrete};
       const auto kind = kinds[random_.Index(4)];
-      const int wall = p_.world.palette.Add({.picture = kind, .tint = kind == Picture::kPlaster ? DrawPaint(paint) : Color(Color::Ones()),
-                                             .tile = Draw(random_, 2.2, 3.8), .patchiness = 0.6F});
+      const int wall = p_.world.palette.Add(
+          {.picture = kind,
+           .tint = kind == Picture::kPlaster ? DrawPaint(paint) : Color(Color::Ones()),
+           .tile = Draw(random_, 2.2, 3.8),
+           .patchiness = 0.6F});
       p_.Wall(spot_, {-half_ + 0.5F, y}, {half_ - 0.5F, y}, height, 0.25F, wall);
       for (float x = -half_ + 2; x + height < half_ - 1; x += height + Draw(random_, 0.5, 9)) {
         if (Maybe(0.5)) continue;  // a painted panel
-        const Vec2 cell(static_cast<float>(paint.Index(kPosterCells)), static_cast<float>(paint.Index(kPosterCells)));
+        const Vec2 cell(static_cast<float>(paint.Index(kPosterCells)),
+                        static_cast<float>(paint.Index(kPosterCells)));
         p_.StandAt(spot_, x, y - 0.14F);
         p_.build.Use(p_.stock.posters);
-        p_.build.Mapped({0, 0, 0.1F}, {height, 0, 0.1F}, {height, 0, height - 0.1F}, {0, 0, height - 0.1F},
-                        cell / kPosterCells, (cell + Vec2::Ones()) / kPosterCells);
+        p_.build.Mapped({0, 0, 0.1F}, {height, 0, 0.1F}, {height, 0, height - 0.1F},
+                        {0, 0, height - 0.1F}, cell / kPosterCells,
+                        (cell + Vec2::Ones()) / kPosterCells);
       }
     }
     Maybe(0.5) ? static_cast<void>(Building(y + 4, false)) : Grove(y + 3, 25, 0.04F);
@@ -173,7 +200,11 @@ class Parcel {
     if (!p_.Claim(spot_, {-half_ + 1, 5}, {half_ - 1, 5 + depth})) return Grove(5, 20, 0.04F);
     const Color paint = Maybe(0.5) ? Color(0.2F, 0.36F, 0.26F) : Color(0.5F, 0.24F, 0.16F);
     const int ground = Maybe(0.3) ? p_.stock.earth
-                                  : p_.world.palette.Add({.picture = Picture::kConcrete, .tint = paint * 2, .tile = 4, .patchiness = 0.4F, .ground = true});
+                                  : p_.world.palette.Add({.picture = Picture::kConcrete,
+                                                          .tint = paint * 2,
+                                                          .tile = 4,
+                                                          .patchiness = 0.4F,
+                                                          .ground = true});
     p_.Pave(spot_, {-half_ + 1, 5}, {half_ - 1, 5 + depth}, ground);
     const float h = Draw(random_, 1.8, 3.6);
     p_.Fence(spot_, {-half_ + 1, 5}, {half_ - 1, 5}, h);
@@ -186,12 +217,14 @@ class Parcel {
       p_.build.Box({-0.05F, 1.4F, 0}, {0.05F, 1.5F, 2.1F});
       p_.build.Box({-0.05F, -1.5F, 2}, {0.05F, 1.5F, 2.1F}, true);
     }
-    for (std::uint64_t k = 0; k < 7; ++k) p_.Plant(p_.plants.fine, Id(500 + k), spot_.At(Draw(random_, -half_, half_), depth + 8));
+    for (std::uint64_t k = 0; k < 7; ++k)
+      p_.Plant(p_.plants.fine, Id(500 + k), spot_.At(Draw(random_, -half_, half_), depth + 8));
   }
 
   void Plaza() {
     const float depth = Draw(random_, 8, 16);
-    p_.Pave(spot_, {-half_ + 1, 3.2F}, {half_ - 1, 4 + depth}, Maybe(0.6) ? p_.stock.pavers : p_.stock.slabs);
+    p_.Pave(spot_, {-half_ + 1, 3.2F}, {half_ - 1, 4 + depth},
+            Maybe(0.6) ? p_.stock.pavers : p_.stock.slabs);
     const float x = Draw(random_, -0.5, 0.5) * half_;
     if (p_.Claim(spot_, {x - 2.4F, 6}, {x + 2.4F, 10.5F}) && p_.Stands(Id(63), 0.35)) {
       // Kiosks come, go and change hands.
@@ -203,10 +236,12 @@ class Parcel {
       const float bx = Draw(random_, -half_ + 2, half_ - 2), by = Draw(random_, 4.5, 4 + depth);
       if (!p_.Claim(spot_, {bx - 1, by - 0.5F}, {bx + 1, by + 0.5F})) continue;
       p_.StandAt(spot_, bx, by, Draw(random_, 0, 6.28));
-      Maybe(0.7) ? BuildBench(p_.stock, p_.build) : BuildBin(p_.stock.yellow_paint, p_.stock, p_.build);
+      Maybe(0.7) ? BuildBench(p_.stock, p_.build)
+                 : BuildBin(p_.stock.yellow_paint, p_.stock, p_.build);
     }
     for (std::uint64_t k = 0; k < 7; ++k) {
-      p_.Plant(Maybe(0.5) ? p_.plants.palms : p_.plants.flowering, Id(600 + k), spot_.At(Draw(random_, -half_, half_), Draw(random_, 4.5, 5 + depth)));
+      p_.Plant(Maybe(0.5) ? p_.plants.palms : p_.plants.flowering, Id(600 + k),
+               spot_.At(Draw(random_, -half_, half_), Draw(random_, 4.5, 5 + depth)));
     }
     if (Maybe(0.3) && p_.Claim(spot_, {-3, 12}, {3, 18})) {
       p_.StandAt(spot_, 0, 15);
@@ -218,10 +253,12 @@ class Parcel {
     for (float y = 5; y < 14; y += Draw(random_, 2, 4)) {
       const float from = Draw(random_, -half_, 0), to = Draw(random_, 1, half_);
       if (!p_.Claim(spot_, {from, y - 0.5F}, {to, y + 0.5F})) continue;
-      p_.Wall(spot_, {from, y}, {to, y}, Draw(random_, 0.5, 1.5), Draw(random_, 0.5, 0.9), p_.stock.hedge);
+      p_.Wall(spot_, {from, y}, {to, y}, Draw(random_, 0.5, 1.5), Draw(random_, 0.5, 0.9),
+              p_.stock.hedge);
     }
     for (std::uint64_t k = 0; k < 16; ++k) {
-      p_.Plant(Maybe(0.6) ? p_.plants.bushes : p_.plants.flowering, Id(700 + k), spot_.At(Draw(random_, -half_, half_), Draw(random_, 4.5, 15)));
+      p_.Plant(Maybe(0.6) ? p_.plants.bushes : p_.plants.flowering, Id(700 + k),
+               spot_.At(Draw(random_, -half_, half_), Draw(random_, 4.5, 15)));
     }
   }
 
@@ -252,7 +289,8 @@ void FillParcels(Planner& planner) {
       std::uint64_t id = 0;
       for (float s = 0; s < street.length();) {
         const float length = Draw(random, 16, 44);
-        const Spot spot = planner.Beside(street, std::min(s + length / 2, street.length() - 1), left, 0);
+        const Spot spot =
+            planner.Beside(street, std::min(s + length / 2, street.length() - 1), left, 0);
         Parcel(planner, spot, length, SubSeed(random.Bits(), ++id)).Fill();
         s += length + Draw(random, 0, 4);
       }

@@ -19,7 +19,8 @@ float Grain(float u, float v, int size, std::uint32_t seed) {
 Texel Asphalt(float u, float v) {
   const float stones = Fbm(u * 128, v * 128, 128, 2, 1);
   const float patches = Fbm(u * 5, v * 5, 5, 5, 2);
-  float shade = 0.085F * (0.55F + 0.6F * patches + 0.55F * stones) * (0.7F + 0.6F * Grain(u, v, 512, 3));
+  float shade =
+      0.085F * (0.55F + 0.6F * patches + 0.55F * stones) * (0.7F + 0.6F * Grain(u, v, 512, 3));
   const CellNoise cells = Cells(u * 4 + 0.35F * Fbm(u * 16, v * 16, 16, 3, 4),
                                 v * 4 + 0.35F * Fbm(u * 16, v * 16, 16, 3, 5), 4, 6);
   const float crack = cells.second - cells.nearest;
@@ -29,7 +30,8 @@ Texel Asphalt(float u, float v) {
 
 Texel Slabs(float u, float v) {
   const float x = u * 6, y = v * 6;
-  const float edge = std::min({x - std::floor(x), std::ceil(x) - x, y - std::floor(y), std::ceil(y) - y});
+  const float edge =
+      std::min({x - std::floor(x), std::ceil(x) - x, y - std::floor(y), std::ceil(y) - y});
   const auto id = LatticeHash(static_cast<int>(x), static_cast<int>(y), 11);
   const float tone = 0.8F + 0.35F * static_cast<float>(id & 255) / 255.0F;
   const float dirt = Fbm(u * 9, v * 9, 9, 6, 12, 0.65F);
@@ -56,7 +58,8 @@ Texel Grass(float u, float v) {
   const float blades = Fbm(u * 96, v * 48, 48, 3, 31, 0.7F);
   const float tufts = Fbm(u * 14, v * 14, 14, 4, 32);
   const float dry = SmoothStep(0.5F, 0.75F, Fbm(u * 4, v * 4, 4, 5, 33));
-  const float light = (0.35F + 0.9F * blades) * (0.5F + 0.9F * tufts) * (0.75F + 0.5F * Grain(u, v, 512, 34));
+  const float light =
+      (0.35F + 0.9F * blades) * (0.5F + 0.9F * tufts) * (0.75F + 0.5F * Grain(u, v, 512, 34));
   const Color green(0.065F, 0.115F, 0.025F), straw(0.19F, 0.165F, 0.075F);
   return {(green * (1 - 0.6F * dry) + straw * 0.6F * dry) * light * 1.25F, 1};
 }
@@ -87,13 +90,20 @@ Texel RoadPaint(float u, float v) {
 
 Texture PaintGround(Picture picture) {
   switch (picture) {
-    case Picture::kAsphalt: return Texture::Paint(512, Asphalt);
-    case Picture::kSlabs: return Texture::Paint(512, Slabs);
-    case Picture::kPavers: return Texture::Paint(512, Pavers);
-    case Picture::kGrass: return Texture::Paint(512, Grass);
-    case Picture::kEarth: return Texture::Paint(512, Earth);
-    case Picture::kGravel: return Texture::Paint(512, Gravel);
-    default: return Texture::Paint(256, RoadPaint);
+    case Picture::kAsphalt:
+      return Texture::Paint(512, Asphalt);
+    case Picture::kSlabs:
+      return Texture::Paint(512, Slabs);
+    case Picture::kPavers:
+      return Texture::Paint(512, Pavers);
+    case Picture::kGrass:
+      return Texture::Paint(512, Grass);
+    case Picture::kEarth:
+      return Texture::Paint(512, Earth);
+    case Picture::kGravel:
+      return Texture::Paint(512, Gravel);
+    default:
+      return Texture::Paint(256, RoadPaint);
   }
 }
 

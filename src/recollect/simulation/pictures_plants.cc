@@ -14,7 +14,8 @@ namespace {
 class Spray {
  public:
   explicit Spray(int size, std::uint64_t seed)
-      : size_(size), random_(seed),
+      : size_(size),
+        random_(seed),
         texels_(static_cast<std::size_t>(size * size), Texel{Color::Zero(), 0}) {}
 
   Random& random() { return random_; }
@@ -107,8 +108,8 @@ Texture GrassTuft() {
   Spray spray(256, 79);
   Random& random = spray.random();
   for (int i = 0; i < 90; ++i) {
-    spray.Leaf(random.Uniform(0.15, 0.85), 0.0, random.Uniform(1.1, 2.05), random.Uniform(0.4, 0.98),
-               random.Uniform(0.015, 0.035), LeafGreen(random) * 1.2F);
+    spray.Leaf(random.Uniform(0.15, 0.85), 0.0, random.Uniform(1.1, 2.05),
+               random.Uniform(0.4, 0.98), random.Uniform(0.015, 0.035), LeafGreen(random) * 1.2F);
   }
   return spray.Done();
 }
@@ -146,16 +147,26 @@ Texel WireMesh(float u, float v) {
 
 Texture PaintPlant(Picture picture) {
   switch (picture) {
-    case Picture::kBroadLeaves: return Bunch(61, 260, 0.17, 0.085, false);
-    case Picture::kFineLeaves: return Bunch(62, 700, 0.09, 0.035, false);
-    case Picture::kLongLeaves: return Bunch(63, 260, 0.26, 0.03, true);
-    case Picture::kPalmFrond: return PalmFrond();
-    case Picture::kBlossom: return Blossom();
-    case Picture::kGrassTuft: return GrassTuft();
-    case Picture::kBark: return Texture::Paint(256, Bark);
-    case Picture::kForest: return Texture::Paint(512, Forest);
-    case Picture::kHedge: return Texture::Paint(512, Hedge);
-    default: return Texture::Paint(256, WireMesh);
+    case Picture::kBroadLeaves:
+      return Bunch(61, 260, 0.17, 0.085, false);
+    case Picture::kFineLeaves:
+      return Bunch(62, 700, 0.09, 0.035, false);
+    case Picture::kLongLeaves:
+      return Bunch(63, 260, 0.26, 0.03, true);
+    case Picture::kPalmFrond:
+      return PalmFrond();
+    case Picture::kBlossom:
+      return Blossom();
+    case Picture::kGrassTuft:
+      return GrassTuft();
+    case Picture::kBark:
+      return Texture::Paint(256, Bark);
+    case Picture::kForest:
+      return Texture::Paint(512, Forest);
+    case Picture::kHedge:
+      return Texture::Paint(512, Hedge);
+    default:
+      return Texture::Paint(256, WireMesh);
   }
 }
 

@@ -32,13 +32,15 @@ void DrawWindow(cv::Mat3b cell, Random& random) {
   const double dark = random.Uniform(15, 60);
   cell.setTo(cv::Scalar(dark * 1.1, dark, dark * 0.95));
   for (int i = 0; i < 5; ++i) {  // furniture and shelves in the dark of the room
-    const cv::Point a(static_cast<int>(random.Index(n)), n / 3 + static_cast<int>(random.Index(n / 2)));
+    const cv::Point a(static_cast<int>(random.Index(n)),
+                      n / 3 + static_cast<int>(random.Index(n / 2)));
     cv::rectangle(cell, a, a + cv::Point(n / 5, n / 3), RandomPaint(random, 10, 100), cv::FILLED);
   }
   const double kind = random.Uniform();
   const cv::Scalar cloth = RandomPaint(random, 110, 230);
   if (kind < 0.3) {  // curtains
-    const int left = static_cast<int>(random.Index(n / 2)), right = n - static_cast<int>(random.Index(n / 2));
+    const int left = static_cast<int>(random.Index(n / 2)),
+              right = n - static_cast<int>(random.Index(n / 2));
     for (int x = 0; x < n; ++x) {
       if (x > left && x < right) continue;
       cv::line(cell, {x, 0}, {x, n}, cloth * (0.75 + 0.25 * std::sin(x * 1.1)));
@@ -50,7 +52,8 @@ void DrawWindow(cv::Mat3b cell, Random& random) {
     cv::rectangle(cell, {n / 8, n / 8}, {n - n / 8, n / 5}, {200, 240, 250}, cv::FILLED);
   } else if (kind < 0.8) {  // papers stuck to the pane
     for (int i = 0; i < 4; ++i) {
-      const cv::Point a(static_cast<int>(random.Index(n - 16)), static_cast<int>(random.Index(n - 20)));
+      const cv::Point a(static_cast<int>(random.Index(n - 16)),
+                        static_cast<int>(random.Index(n - 20)));
       cv::rectangle(cell, a, a + cv::Point(14, 18), RandomPaint(random, 120, 250), cv::FILLED);
     }
   }
@@ -58,9 +61,9 @@ void DrawWindow(cv::Mat3b cell, Random& random) {
 
 void DrawSign(cv::Mat3b cell, Random& random) {
   static const std::array<std::string, 16> kNames = {
-      "BIBLIOTECA", "REITORIA", "LABORATORIO", "AUDITORIO", "CENTRO DE ARTES", "ENGENHARIA",
-      "CANTINA", "GINASIO", "TEATRO", "FISICA", "QUIMICA", "MUSEU", "BANCO", "LIVRARIA",
-      "SECRETARIA", "ESTACIONAMENTO"};
+      "BIBLIOTECA", "REITORIA", "LABORATORIO", "AUDITORIO",     "CENTRO DE ARTES", "ENGENHARIA",
+      "CANTINA",    "GINASIO",  "TEATRO",      "FISICA",        "QUIMICA",         "MUSEU",
+      "BANCO",      "LIVRARIA", "SECRETARIA",  "ESTACIONAMENTO"};
   static const std::array<int, 3> kFonts = {cv::FONT_HERSHEY_DUPLEX, cv::FONT_HERSHEY_TRIPLEX,
                                             cv::FONT_HERSHEY_SIMPLEX};
   const bool light = random.Uniform() < 0.5;
@@ -85,10 +88,18 @@ void DrawPoster(cv::Mat3b cell, Random& random) {
     const cv::Scalar paint = RandomPaint(random, 0, 255);
     const int size = 6 + static_cast<int>(random.Index(n / 5));
     switch (random.Index(5)) {
-      case 0: cv::circle(cell, p, size, paint, cv::FILLED); break;
-      case 1: cv::rectangle(cell, p, p + cv::Point(size, 2 * size), paint, cv::FILLED); break;
-      case 2: cv::ellipse(cell, p, {size, size / 2}, random.Uniform(0, 180), 0, 270, paint, 7); break;
-      case 3: cv::line(cell, p, q, paint, 3 + size / 8); break;
+      case 0:
+        cv::circle(cell, p, size, paint, cv::FILLED);
+        break;
+      case 1:
+        cv::rectangle(cell, p, p + cv::Point(size, 2 * size), paint, cv::FILLED);
+        break;
+      case 2:
+        cv::ellipse(cell, p, {size, size / 2}, random.Uniform(0, 180), 0, 270, paint, 7);
+        break;
+      case 3:
+        cv::line(cell, p, q, paint, 3 + size / 8);
+        break;
       default:
         cv::putText(cell, std::string(1, static_cast<char>('A' + random.Index(26))), p,
                     cv::FONT_HERSHEY_TRIPLEX, 0.05 * size, paint, 1 + size / 8);
@@ -115,11 +126,13 @@ void DrawTrafficSign(cv::Mat3b cell, int index) {
   } else if (index < 14) {  // no parking and the like
     cell.setTo(red);
     cv::circle(cell, {m, m}, n * 37 / 100, white, cv::FILLED);
-    cv::putText(cell, index == 12 ? "E" : "P", {n / 3, n * 66 / 100}, cv::FONT_HERSHEY_DUPLEX, n / 45.0, black, 6);
+    cv::putText(cell, index == 12 ? "E" : "P", {n / 3, n * 66 / 100}, cv::FONT_HERSHEY_DUPLEX,
+                n / 45.0, black, 6);
     cv::line(cell, {n / 5, n / 5}, {n * 4 / 5, n * 4 / 5}, red, 9);
   } else {  // blue boards
     cell.setTo(cv::Scalar(170, 80, 20));
-    cv::putText(cell, index == 14 ? "P" : "H", {n / 4, n * 75 / 100}, cv::FONT_HERSHEY_DUPLEX, n / 32.0, white, 8);
+    cv::putText(cell, index == 14 ? "P" : "H", {n / 4, n * 75 / 100}, cv::FONT_HERSHEY_DUPLEX,
+                n / 32.0, white, 8);
   }
 }
 

@@ -18,14 +18,16 @@ float Grain(float u, float v, std::uint32_t seed) {
 
 // Rain marks: long streaks down a wall, about 1, darker where the water ran.
 float Streaks(float u, float v, std::uint32_t seed) {
-  const float fine = Fbm(u * 64, v * 3, 3, 4, seed, 0.6F), broad = Fbm(u * 12, v * 2, 2, 4, seed + 9);
+  const float fine = Fbm(u * 64, v * 3, 3, 4, seed, 0.6F),
+              broad = Fbm(u * 12, v * 2, 2, 4, seed + 9);
   return 1.0F - 0.55F * SmoothStep(0.5F, 0.8F, 0.5F * fine + 0.5F * broad);
 }
 
 Texel Concrete(float u, float v) {
   const float cloud = Fbm(u * 5, v * 5, 5, 7, 101, 0.6F);
   const CellNoise pores = Cells(u * 40, v * 40, 40, 102);
-  float shade = 0.36F * (0.6F + 0.75F * cloud) * Streaks(u, v, 103) * (0.88F + 0.24F * Grain(u, v, 104));
+  float shade =
+      0.36F * (0.6F + 0.75F * cloud) * Streaks(u, v, 103) * (0.88F + 0.24F * Grain(u, v, 104));
   if (pores.nearest < 0.13F && pores.id % 4 == 0) shade *= 0.5F;
   return {Color(1.0F, 0.98F, 0.92F) * shade, 1};
 }
@@ -44,10 +46,12 @@ Texel Brick(float u, float v) {
   const float row = std::floor(y);
   const float x = u * 8 + (static_cast<int>(row) % 2 == 0 ? 0.0F : 0.5F);
   const auto id = LatticeHash(static_cast<int>(std::floor(x)) % 8, static_cast<int>(row), 121);
-  const float grain = (0.7F + 0.5F * Fbm(u * 48, v * 48, 48, 3, 122)) * (0.85F + 0.3F * Grain(u, v, 123));
+  const float grain =
+      (0.7F + 0.5F * Fbm(u * 48, v * 48, 48, 3, 122)) * (0.85F + 0.3F * Grain(u, v, 123));
   if (Joint(x) < 0.04F || Joint(y) < 0.1F) return {Color(0.33F, 0.3F, 0.26F) * grain, 1};
   const float tone = 0.55F + 0.8F * Part(id);
-  return {Color(0.33F, 0.125F + 0.04F * Part(id >> 8), 0.075F) * tone * grain * Streaks(u, v, 124), 1};
+  return {Color(0.33F, 0.125F + 0.04F * Part(id >> 8), 0.075F) * tone * grain * Streaks(u, v, 124),
+          1};
 }
 
 Texel Plaster(float u, float v) {
@@ -66,13 +70,15 @@ Texel Tiles(float u, float v) {
   // A quarter circle in every other tile: the pattern of many a Brazilian wall.
   const bool motif = id % 2 == 0 && std::hypot(Fraction(x), Fraction(y)) < 0.7F;
   return {(motif ? Color(0.22F, 0.33F, 0.5F) : Color(0.68F, 0.69F, 0.7F)) * glaze *
-              (0.75F + 0.35F * Part(id >> 7)), 1};
+              (0.75F + 0.35F * Part(id >> 7)),
+          1};
 }
 
 Texel Stone(float u, float v) {
   const CellNoise c = Cells(u * 9 + 0.3F * Fbm(u * 18, v * 18, 18, 3, 151), v * 9, 9, 152);
   const float gap = c.second - c.nearest;
-  const float face = (0.6F + 0.75F * Fbm(u * 30, v * 30, 30, 5, 153, 0.65F)) * (0.85F + 0.3F * Grain(u, v, 155));
+  const float face =
+      (0.6F + 0.75F * Fbm(u * 30, v * 30, 30, 5, 153, 0.65F)) * (0.85F + 0.3F * Grain(u, v, 155));
   if (gap < 0.07F) return {Color(0.15F, 0.14F, 0.12F) * face, 1};
   const float tone = 0.5F + 0.9F * Part(c.id);
   const Color warm(0.30F, 0.25F, 0.18F), cool(0.22F, 0.23F, 0.24F);
@@ -116,16 +122,26 @@ Texel Cloth(float u, float v) {
 
 Texture PaintWall(Picture picture) {
   switch (picture) {
-    case Picture::kConcrete: return Texture::Paint(512, Concrete);
-    case Picture::kBoardConcrete: return Texture::Paint(512, BoardConcrete);
-    case Picture::kBrick: return Texture::Paint(512, Brick);
-    case Picture::kPlaster: return Texture::Paint(512, Plaster);
-    case Picture::kTiles: return Texture::Paint(512, Tiles);
-    case Picture::kStone: return Texture::Paint(512, Stone);
-    case Picture::kRoofTiles: return Texture::Paint(512, RoofTiles);
-    case Picture::kMetal: return Texture::Paint(512, Metal);
-    case Picture::kWood: return Texture::Paint(512, Wood);
-    default: return Texture::Paint(256, Cloth);
+    case Picture::kConcrete:
+      return Texture::Paint(512, Concrete);
+    case Picture::kBoardConcrete:
+      return Texture::Paint(512, BoardConcrete);
+    case Picture::kBrick:
+      return Texture::Paint(512, Brick);
+    case Picture::kPlaster:
+      return Texture::Paint(512, Plaster);
+    case Picture::kTiles:
+      return Texture::Paint(512, Tiles);
+    case Picture::kStone:
+      return Texture::Paint(512, Stone);
+    case Picture::kRoofTiles:
+      return Texture::Paint(512, RoofTiles);
+    case Picture::kMetal:
+      return Texture::Paint(512, Metal);
+    case Picture::kWood:
+      return Texture::Paint(512, Wood);
+    default:
+      return Texture::Paint(256, Cloth);
   }
 }
 

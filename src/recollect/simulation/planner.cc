@@ -8,8 +8,15 @@ namespace recollect::simulation {
 
 Planner::Planner(const std::vector<Street>& all, Site& land, const Day& when, std::uint64_t number,
                  const Stock& things, const Plants& greens, const Vehicles& wheels, World& into)
-    : streets(all), site(land), day(when), seed(number), stock(things), plants(greens),
-      vehicles(wheels), world(into), build(into.solid, into.palette) {
+    : streets(all),
+      site(land),
+      day(when),
+      seed(number),
+      stock(things),
+      plants(greens),
+      vehicles(wheels),
+      world(into),
+      build(into.solid, into.palette) {
   for (const Model& model : world.models) {
     float reach = 0;
     for (const Mesh* mesh : {&model.solid, &model.cutout}) {
@@ -47,7 +54,8 @@ void Planner::Place(int model, const Vec3& at, float heading, float scale, const
 
 void Planner::Plant(const std::vector<int>& list, std::uint64_t id, const Vec2& at, float scale) {
   Random random(id);
-  const int model = list[static_cast<std::size_t>(random.Index(static_cast<std::int64_t>(list.size())))];
+  const int model =
+      list[static_cast<std::size_t>(random.Index(static_cast<std::int64_t>(list.size())))];
   const float size = scale * Draw(random, 0.75, 1.3), turn = Draw(random, 0, 6.28318);
   const float reach = low_reach_[static_cast<std::size_t>(model)] * size;
   if (site.Clearance(at.x(), at.y()) < std::max(0.5F, reach - 0.7F)) return;
@@ -56,9 +64,11 @@ void Planner::Plant(const std::vector<int>& list, std::uint64_t id, const Vec2& 
   Color tint = Plants::Tint(id, day);
   if (&list == &plants.flowering) {  // in bloom it shows its flowers, else it is green
     const bool yellow = random.Uniform() < 0.4, pink = random.Uniform() < 0.4;
-    const Color bloom = yellow ? Color(1.1F, 0.75F, 0.05F) : (pink ? Color(0.9F, 0.3F, 0.55F) : Color(0.9F, 0.14F, 0.04F));
+    const Color bloom = yellow ? Color(1.1F, 0.75F, 0.05F)
+                               : (pink ? Color(0.9F, 0.3F, 0.55F) : Color(0.9F, 0.14F, 0.04F));
     const float month = static_cast<float>(std::fmod(day.unix_time / (365.25 * 86400), 1.0)) * 12;
-    const bool now = !day.change.season || (yellow ? month > 6.5F && month < 9.5F : month > 9 || month < 2);
+    const bool now =
+        !day.change.season || (yellow ? month > 6.5F && month < 9.5F : month > 9 || month < 2);
     tint = now ? bloom : Color(0.2F, 0.32F, 0.08F) * tint;
   }
   Place(model, site.OnGround(at.x(), at.y()), turn, size, tint);
@@ -73,8 +83,10 @@ void Planner::Park(std::uint64_t id, const Vec3& at, float heading, double likel
   const auto& list = random.Uniform() < 0.94 ? vehicles.cars : vehicles.lorries;
   int model = list[static_cast<std::size_t>(random.Index(static_cast<std::int64_t>(list.size())))];
   if (vehicles.lengths[static_cast<std::size_t>(model)] > 6) model = vehicles.cars.front();
-  const float turn = heading + Draw(random, -0.05, 0.05) + (random.Uniform() < 0.25 ? std::numbers::pi_v<float> : 0);
-  Place(model, at + Vec3(Draw(random, -0.15, 0.15), Draw(random, -0.15, 0.15), 0), turn, 1, DrawCarPaint(random));
+  const float turn = heading + Draw(random, -0.05, 0.05) +
+                     (random.Uniform() < 0.25 ? std::numbers::pi_v<float> : 0);
+  Place(model, at + Vec3(Draw(random, -0.15, 0.15), Draw(random, -0.15, 0.15), 0), turn, 1,
+        DrawCarPaint(random));
 }
 
 void Planner::Pave(const Spot& spot, const Vec2& low, const Vec2& high, int material, float lift) {
@@ -83,12 +95,14 @@ void Planner::Pave(const Spot& spot, const Vec2& low, const Vec2& high, int mate
   const int columns = std::max(1, static_cast<int>((high.x() - low.x()) / 1.5F));
   const int rows = std::max(1, static_cast<int>((high.y() - low.y()) / 1.5F));
   const auto at = [&](int i, int j) {
-    const Vec2 p = spot.At(low.x() + (high.x() - low.x()) * static_cast<float>(i) / static_cast<float>(columns),
-                           low.y() + (high.y() - low.y()) * static_cast<float>(j) / static_cast<float>(rows));
+    const Vec2 p = spot.At(
+        low.x() + (high.x() - low.x()) * static_cast<float>(i) / static_cast<float>(columns),
+        low.y() + (high.y() - low.y()) * static_cast<float>(j) / static_cast<float>(rows));
     return site.OnGround(p.x(), p.y(), 0.06F + lift);
   };
   for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) build.Quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+    for (int i = 0; i < columns; ++i)
+      build.Quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
   }
 }
 
@@ -111,7 +125,8 @@ void Planner::Fence(const Spot& spot, const Vec2& from, const Vec2& to, float he
   }
 }
 
-void Planner::Wall(const Spot& spot, const Vec2& from, const Vec2& to, float height, float thickness, int material) {
+void Planner::Wall(const Spot& spot, const Vec2& from, const Vec2& to, float height,
+                   float thickness, int material) {
   const Vec2 a = spot.At(from.x(), from.y()), b = spot.At(to.x(), to.y());
   const float length = (b - a).norm(), heading = std::atan2(b.y() - a.y(), b.x() - a.x());
   const int pieces = std::max(1, static_cast<int>(length / 4));

@@ -13,9 +13,7 @@ namespace recollect::simulation {
 struct Spot {
   Eigen::Isometry3f world_from_spot = Eigen::Isometry3f::Identity();
 
-  Vec2 At(float x, float y) const {
-    return (world_from_spot * Vec3(x, y, 0)).head<2>();
-  }
+  Vec2 At(float x, float y) const { return (world_from_spot * Vec3(x, y, 0)).head<2>(); }
   float heading() const {
     const auto& R = world_from_spot.linear();
     return std::atan2(R(1, 0), R(0, 0));
@@ -54,7 +52,8 @@ class Planner {
   // A row of posts with wire mesh between, from one place of a spot to another.
   void Fence(const Spot& spot, const Vec2& from, const Vec2& to, float height);
   // A solid wall or hedge of some thickness along the way between two places of a spot.
-  void Wall(const Spot& spot, const Vec2& from, const Vec2& to, float height, float thickness, int material);
+  void Wall(const Spot& spot, const Vec2& from, const Vec2& to, float height, float thickness,
+            int material);
 
   // Whether the thing stands on this day; it comes and goes `rate` times a year.
   bool Stands(std::uint64_t id, double rate) const { return day.Changes(id, rate) % 2 == 0; }

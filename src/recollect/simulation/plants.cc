@@ -22,7 +22,10 @@ struct Shape {
 class TreeMaker {
  public:
   TreeMaker(std::uint64_t seed, const Stock& stock, const Palette& palette)
-      : random_(seed), stock_(stock), solid_(model_.solid, palette), leafy_(model_.cutout, palette) {}
+      : random_(seed),
+        stock_(stock),
+        solid_(model_.solid, palette),
+        leafy_(model_.cutout, palette) {}
 
   // A trunk that forks into limbs, each with a clump of leaves at its end.
   Model Tree(const Shape& shape) {
@@ -90,7 +93,8 @@ class TreeMaker {
     for (int i = 0; i < 4; ++i) {
       const float angle = Draw(random_, 0, 3.14), half = Draw(random_, 0.2, 0.4);
       const Vec3 along(half * std::cos(angle), half * std::sin(angle), 0);
-      const Vec3 at(Draw(random_, -0.3, 0.3), Draw(random_, -0.3, 0.3), -0.03F), up(0, 0, Draw(random_, 0.25, 0.6));
+      const Vec3 at(Draw(random_, -0.3, 0.3), Draw(random_, -0.3, 0.3), -0.03F),
+          up(0, 0, Draw(random_, 0.25, 0.6));
       leafy_.Card(at - along, at + along, at + along + up, at - along + up, Vec3::UnitZ());
     }
     return std::move(model_);
@@ -122,28 +126,44 @@ Plants::Plants(std::uint64_t seed, const Stock& stock, World& world) {
   const auto maker = [&] { return TreeMaker(next = Scramble(next), stock, world.palette); };
   Random random(SubSeed(seed, 9));
   for (int i = 0; i < 7; ++i) {
-    broad.push_back(world.AddModel(maker().Tree(
-        {.trunk = Draw(random, 1.8, 3.2), .trunk_radius = Draw(random, 0.14, 0.3),
-         .crown = {Draw(random, 2, 4), Draw(random, 2, 4), Draw(random, 1.6, 2.8)},
-         .clumps = 8, .cards = 110, .card = 1.5F, .leaves = stock.broad_leaves})));
+    broad.push_back(world.AddModel(
+        maker().Tree({.trunk = Draw(random, 1.8, 3.2),
+                      .trunk_radius = Draw(random, 0.14, 0.3),
+                      .crown = {Draw(random, 2, 4), Draw(random, 2, 4), Draw(random, 1.6, 2.8)},
+                      .clumps = 8,
+                      .cards = 110,
+                      .card = 1.5F,
+                      .leaves = stock.broad_leaves})));
     fine.push_back(world.AddModel(maker().Tree(
-        {.trunk = Draw(random, 2, 4), .trunk_radius = Draw(random, 0.12, 0.22),
+        {.trunk = Draw(random, 2, 4),
+         .trunk_radius = Draw(random, 0.12, 0.22),
          .crown = {Draw(random, 2.5, 4.5), Draw(random, 2.5, 4.5), Draw(random, 1.1, 2)},
-         .clumps = 9, .cards = 110, .card = 1.6F, .leaves = stock.fine_leaves})));
+         .clumps = 9,
+         .cards = 110,
+         .card = 1.6F,
+         .leaves = stock.fine_leaves})));
   }
   for (int i = 0; i < 5; ++i) {
     tall.push_back(world.AddModel(maker().Tree(
-        {.trunk = Draw(random, 5, 8), .trunk_radius = Draw(random, 0.2, 0.35),
+        {.trunk = Draw(random, 5, 8),
+         .trunk_radius = Draw(random, 0.2, 0.35),
          .crown = {Draw(random, 1.5, 2.4), Draw(random, 1.5, 2.4), Draw(random, 3, 4.5)},
-         .clumps = 8, .cards = 100, .card = 1.5F, .leaves = stock.long_leaves})));
+         .clumps = 8,
+         .cards = 100,
+         .card = 1.5F,
+         .leaves = stock.long_leaves})));
     palms.push_back(world.AddModel(maker().Palm(Draw(random, 3.5, 9))));
-    flowering.push_back(world.AddModel(maker().Tree(
-        {.trunk = 2.2F, .trunk_radius = 0.17F,
-         .crown = {Draw(random, 2, 3), Draw(random, 2, 3), Draw(random, 1.3, 2)},
-         .clumps = 7, .cards = 90, .card = 1.3F, .leaves = stock.blossom})));
-    bushes.push_back(world.AddModel(maker().Bush(
-        Draw(random, 0.6, 1.2), Draw(random, 0.7, 1.9),
-        i % 2 == 0 ? stock.broad_leaves : stock.fine_leaves, 34)));
+    flowering.push_back(world.AddModel(
+        maker().Tree({.trunk = 2.2F,
+                      .trunk_radius = 0.17F,
+                      .crown = {Draw(random, 2, 3), Draw(random, 2, 3), Draw(random, 1.3, 2)},
+                      .clumps = 7,
+                      .cards = 90,
+                      .card = 1.3F,
+                      .leaves = stock.blossom})));
+    bushes.push_back(
+        world.AddModel(maker().Bush(Draw(random, 0.6, 1.2), Draw(random, 0.7, 1.9),
+                                    i % 2 == 0 ? stock.broad_leaves : stock.fine_leaves, 34)));
     tufts.push_back(world.AddModel(maker().Tuft()));
   }
 }

@@ -14,8 +14,13 @@ namespace {
 // A lap of the ring with everything a test may want to vary.
 struct Setting {
   explicit Setting(int lap = 1, const Change& change = {}, Weather weather = Weather::kFair)
-      : pool(2), pictures(pool), route(RingRoute(1)), campus(route, 1), drive(route.DriveOf(lap, 1)),
-        day(MakeDay(drive.times.front(), change, weather, 1)), options(Options()),
+      : pool(2),
+        pictures(pool),
+        route(RingRoute(1)),
+        campus(route, 1),
+        drive(route.DriveOf(lap, 1)),
+        day(MakeDay(drive.times.front(), change, weather, 1)),
+        options(Options()),
         renderer(campus, pictures, drive, day, options) {}
 
   static SimulateOptions Options() {
@@ -60,7 +65,8 @@ double Mismatch(const LapRenderer::Shot& a, const cv::Mat& other, const cv::Mat&
       const Eigen::Vector2d p = camera.Project(q);
       const int px = static_cast<int>(std::floor(p.x())), py = static_cast<int>(std::floor(p.y()));
       if (px < 0 || py < 0 || px + 1 >= gb.cols || py + 1 >= gb.rows) continue;
-      if (!other_depth.empty() && std::abs(DepthAt(other_depth, px, py) - q.z()) > 0.05 * q.z()) continue;
+      if (!other_depth.empty() && std::abs(DepthAt(other_depth, px, py) - q.z()) > 0.05 * q.z())
+        continue;
       const double u = p.x() - px, v = p.y() - py;
       const double g = (gb(py, px) * (1 - u) + gb(py, px + 1) * u) * (1 - v) +
                        (gb(py + 1, px) * (1 - u) + gb(py + 1, px + 1) * u) * v;
@@ -77,7 +83,8 @@ TEST(Render, DepthAndPosesAgree) {
   const PinholeCamera& camera = s.renderer.camera().left;
   for (const std::size_t i : {100U, 420U, 800U}) {
     const LapRenderer::Shot a = s.renderer.Take(i), b = s.renderer.Take(i + 2);
-    const SE3 b_from_a = s.renderer.WorldFromCamera(i + 2).Inverse() * s.renderer.WorldFromCamera(i);
+    const SE3 b_from_a =
+        s.renderer.WorldFromCamera(i + 2).Inverse() * s.renderer.WorldFromCamera(i);
     const SE3 right_from_left(Eigen::Matrix3d::Identity(), {-s.renderer.camera().baseline, 0, 0});
     const SE3 shifted(Eigen::Matrix3d::Identity(), {0.2, 0, 0});
     const SE3 turned = SE3::FromRotationVector({0, 0.5 * M_PI / 180, 0}, {0, 0, 0});
@@ -85,7 +92,8 @@ TEST(Render, DepthAndPosesAgree) {
     const double right = Mismatch(a, a.right, {}, camera, right_from_left);
     for (const SE3& wrong : {shifted, turned}) {
       EXPECT_LT(next, 0.75 * Mismatch(a, b.left, {}, camera, wrong * b_from_a)) << "frame " << i;
-      EXPECT_LT(right, 0.75 * Mismatch(a, a.right, {}, camera, wrong * right_from_left)) << "frame " << i;
+      EXPECT_LT(right, 0.75 * Mismatch(a, a.right, {}, camera, wrong * right_from_left))
+          << "frame " << i;
     }
   }
 }
@@ -113,7 +121,8 @@ TEST(Render, StereoMatchingFindsTheTrueDepth) {
     }
   }
   ASSERT_GT(errors.size(), 20000U);
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
   EXPECT_LT(errors[errors.size() / 2], 0.02);
 }
 
@@ -137,7 +146,8 @@ TEST(Render, DaysDifferInWhatIsSwitchedOn) {
   const Route route = RingRoute(1);
   const Campus campus(route, 1);
   const auto built = [&](int lap, const Change& change) {
-    return BuildCampus(campus, MakeDay(route.DriveOf(lap, 1).times.front(), change, Weather::kByDay, 1));
+    return BuildCampus(campus,
+                       MakeDay(route.DriveOf(lap, 1).times.front(), change, Weather::kByDay, 1));
   };
   Change none;
   none.light = none.structures = none.traffic = none.season = false;
@@ -172,7 +182,8 @@ TEST(Render, NothingStandsWhereTheCarDrives) {
     const Drive drive = route.DriveOf(lap, 1);
     const CampusDay day = BuildCampus(campus, MakeDay(drive.times.front(), {}, Weather::kClear, 1));
     const Scene scene(day.world, pictures);
-    const Traffic traffic(campus, day.vehicles, MakeDay(drive.times.front(), {}, Weather::kClear, 1), drive);
+    const Traffic traffic(campus, day.vehicles,
+                          MakeDay(drive.times.front(), {}, Weather::kClear, 1), drive);
     int blocked = 0;
     for (std::size_t i = 0; i + 1 < drive.times.size(); ++i) {
       const Movers movers(scene, traffic.At(drive.times[i]));
@@ -180,8 +191,9 @@ TEST(Render, NothingStandsWhereTheCarDrives) {
       alignas(64) std::array<int, kPacket> valid;
       valid.fill(-1);
       for (int k = 0; k < kPacket; ++k) {  // lengthwise through the car's body
-        const Eigen::Vector3d rear = drive.world_from_car[i] *
-                                     Eigen::Vector3d(-0.6, -0.75 + 0.5 * (k % 4), 0.45 + 0.5 * (k / 4));
+        const Eigen::Vector3d rear =
+            drive.world_from_car[i] *
+            Eigen::Vector3d(-0.6, -0.75 + 0.5 * (k % 4), 0.45 + 0.5 * (k / 4));
         const Eigen::Vector3f ahead = drive.world_from_car[i].rotation().col(0).cast<float>();
         rays.org_x[k] = static_cast<float>(rear.x());
         rays.org_y[k] = static_cast<float>(rear.y());

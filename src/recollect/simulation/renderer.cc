@@ -27,8 +27,13 @@ class Frame {
  public:
   Frame(const Scene& scene, const PictureSet& pictures, const Sky& sky, float wetness,
         const View& view, const Movers* movers)
-      : scene_(scene), pictures_(pictures), sky_(sky), wetness_(wetness), camera_(view.camera),
-        movers_(movers), spread_(static_cast<float>(1 / view.camera.fx)) {
+      : scene_(scene),
+        pictures_(pictures),
+        sky_(sky),
+        wetness_(wetness),
+        camera_(view.camera),
+        movers_(movers),
+        spread_(static_cast<float>(1 / view.camera.fx)) {
     for (int y = 0; y < camera_.height; ++y) {
       const SE3 pose = Interpolate(view.world_from_camera, view.world_from_camera_last,
                                    camera_.height > 1 ? y / (camera_.height - 1.0) : 0.0);
@@ -84,7 +89,8 @@ class Frame {
       const RowPose& row = rows_[static_cast<std::size_t>(pixels[k].y)];
       const Vec3 in_camera((static_cast<float>(pixels[k].x - camera_.cx) + pixels[k].dx) * spread_,
                            static_cast<float>((static_cast<double>(pixels[k].y) - camera_.cy +
-                                               static_cast<double>(pixels[k].dy)) / camera_.fy),
+                                               static_cast<double>(pixels[k].dy)) /
+                                              camera_.fy),
                            1);
       lengths[i] = in_camera.norm();
       directions[i] = row.R * (in_camera / lengths[i]);

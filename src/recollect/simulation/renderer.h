@@ -18,7 +18,8 @@ struct Rendering {
   const Color& At(int x, int y) const { return radiance[Index(x, y)]; }
   float Depth(int x, int y) const { return depth[Index(x, y)]; }
   std::size_t Index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
   }
 };
 

@@ -17,7 +17,12 @@ class RoadLayer {
  public:
   RoadLayer(const Street& street, const Site& site, const Day& day, std::uint64_t seed,
             const Stock& stock, World& world)
-      : street_(street), site_(site), day_(day), seed_(seed), stock_(stock), world_(world),
+      : street_(street),
+        site_(site),
+        day_(day),
+        seed_(seed),
+        stock_(stock),
+        world_(world),
         build_(world.solid, world.palette) {}
 
   void Lay() {
@@ -53,7 +58,8 @@ class RoadLayer {
         build_.Use(world_.palette.Add({.picture = Picture::kAsphalt,
                                        .tint = Color(warm, 1, 2 - warm) * tone,
                                        .tile = Draw(random, 2.6, 4.2),
-                                       .patchiness = Draw(random, 0.4, 0.9), .ground = true}));
+                                       .patchiness = Draw(random, 0.4, 0.9),
+                                       .ground = true}));
         change += static_cast<std::size_t>(random.Uniform(35, 140));
       }
       const auto& a = Station(i);
@@ -72,7 +78,8 @@ class RoadLayer {
     // On the inside of a tight bend, and where another street comes in, there is road instead.
     const Vec3 probe = PointOn(street_, s + 0.5F, sign * ((e0 + e1) / 2 + 1.0F));
     if (site_.Clearance(probe.x(), probe.y()) < 0.5F) return;
-    const float w0 = VergeWidth(street_, seed_, s, left), w1 = VergeWidth(street_, seed_, s + 1, left);
+    const float w0 = VergeWidth(street_, seed_, s, left),
+                w1 = VergeWidth(street_, seed_, s + 1, left);
     const auto quad = [&](float o0, float o1, float z0, float p0, float p1, float z1) {
       const Vec3 a = At(s, sign * (e0 + o0), z0), b = At(s + 1, sign * (e1 + o1), z0);
       const Vec3 c = At(s + 1, sign * (e1 + p1), z1), d = At(s, sign * (e0 + p0), z1);
@@ -92,8 +99,9 @@ class RoadLayer {
 
   int VergeMaterial(float s, bool left) const {
     const auto piece = static_cast<std::uint64_t>(s / kVergeStretch) * 2 + (left ? 1 : 0);
-    const std::array<int, 8> kinds = {stock_.slabs, stock_.slabs, stock_.pavers, stock_.grass,
-                                      stock_.grass, stock_.old_concrete, stock_.earth, stock_.gravel};
+    const std::array<int, 8> kinds = {stock_.slabs, stock_.slabs, stock_.pavers,
+                                      stock_.grass, stock_.grass, stock_.old_concrete,
+                                      stock_.earth, stock_.gravel};
     return kinds[SubSeed(SubSeed(seed_, 2), piece) % kinds.size()];
   }
 
@@ -152,10 +160,11 @@ class RoadLayer {
       if (kind < 0.3) {
         build_.Use(world_.palette.Add({.picture = Picture::kAsphalt,
                                        .tint = Color::Constant(Draw(random, 0.45, 1.9)),
-                                       .tile = 3, .ground = true}));
+                                       .tile = 3,
+                                       .ground = true}));
         const float half = Draw(random, 0.3, 1.2);
-        Strip(s, s + Draw(random, 0.6, 4), std::max(-room, side - half), std::min(room, side + half),
-              0.003F);
+        Strip(s, s + Draw(random, 0.6, 4), std::max(-room, side - half),
+              std::min(room, side + half), 0.003F);
       } else if (kind < 0.5) {
         build_.Use(stock_.rubber);
         float x = side;
@@ -191,9 +200,10 @@ class RoadLayer {
         for (int i = 0; i < 6; ++i) {
           const float t = s + 0.35F * static_cast<float>(i), z = 0.07F, lift = i < 3 ? 0 : z;
           build_.Use(i % 2 == 0 ? stock_.yellow_paint : stock_.black);
-          const float z0 = i < 3 ? z * static_cast<float>(i) / 3 : lift * static_cast<float>(6 - i) / 3;
-          const float z1 = i < 3 ? z * static_cast<float>(i + 1) / 3
-                                 : lift * static_cast<float>(5 - i) / 3;
+          const float z0 =
+              i < 3 ? z * static_cast<float>(i) / 3 : lift * static_cast<float>(6 - i) / 3;
+          const float z1 =
+              i < 3 ? z * static_cast<float>(i + 1) / 3 : lift * static_cast<float>(5 - i) / 3;
           build_.Quad(At(t, -a.half_right, z0 + 0.01F), At(t + 0.35F, -a.half_right, z1 + 0.01F),
                       At(t + 0.35F, a.half_left, z1 + 0.01F), At(t, a.half_left, z0 + 0.01F));
         }
@@ -216,7 +226,8 @@ float VergeWidth(const Street& street, std::uint64_t street_seed, float s, bool 
   const auto width = [&](float piece) {
     const auto count = std::ceil(street.length() / kVergeStretch);
     const auto key = static_cast<std::uint64_t>(street.closed ? std::fmod(piece, count) : piece);
-    return 1.5F + 2.3F * static_cast<float>(SubSeed(SubSeed(street_seed, 6), key * 2 + left) % 997) / 997;
+    return 1.5F +
+           2.3F * static_cast<float>(SubSeed(SubSeed(street_seed, 6), key * 2 + left) % 997) / 997;
   };
   const float piece = std::floor(s / kVergeStretch), into = s - piece * kVergeStretch;
   const float t = SmoothStep(kVergeStretch - 6, kVergeStretch, into);

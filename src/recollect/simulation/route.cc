@@ -37,9 +37,10 @@ class Sway {
 };
 
 SE3 CarPose(const Vector3d& at, double yaw, double pitch, double roll) {
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) *
-                             Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(roll, Vector3d::UnitX())).toRotationMatrix();
+  const Eigen::Matrix3d R =
+      (Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
+       Eigen::AngleAxisd(roll, Vector3d::UnitX()))
+          .toRotationMatrix();
   return {R, at};
 }
 
@@ -55,9 +56,10 @@ double MadeUpStart(int lap, std::uint64_t seed) {
 void RequireWay(const std::string& where, const std::vector<Vector3d>& way) {
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Vector3d step = way[i] - way[i - 1];
-    Require(std::abs(step.z()) <= 0.3 * step.norm(), where,
-            fmt::format("the route is steeper than 30 % near ({:.1f}, {:.1f})", way[i].x(), way[i].y()),
-            "z must be up");
+    Require(
+        std::abs(step.z()) <= 0.3 * step.norm(), where,
+        fmt::format("the route is steeper than 30 % near ({:.1f}, {:.1f})", way[i].x(), way[i].y()),
+        "z must be up");
   }
   for (std::size_t i = 0; i < way.size(); i += 2) {
     for (std::size_t j = i + 40; j < way.size(); j += 2) {
@@ -87,7 +89,8 @@ std::vector<Vector3d> Resample(const std::vector<Vector3d>& line, double step) {
 Route RingRoute(std::uint64_t seed) {
   Random random(SubSeed(seed, 0x21));
   const double a = random.Uniform(0.10, 0.17), b = random.Uniform(0.03, 0.07);
-  const double p = random.Uniform(0, 6.28), q = random.Uniform(0, 6.28), h = random.Uniform(0, 6.28);
+  const double p = random.Uniform(0, 6.28), q = random.Uniform(0, 6.28),
+               h = random.Uniform(0, 6.28);
   std::vector<Vector3d> ring;
   double length = 0;
   for (int i = 0; i <= 2000; ++i) {
@@ -170,10 +173,12 @@ Drive Route::DriveOf(int lap, std::uint64_t seed) const {
             fmt::format("there is no lap {}: this route has laps 1 to {}", lap, drives.size()));
     return drives[static_cast<std::size_t>(lap - 1)];
   }
-  Require(lap >= 1 && lap <= 99, "laps", fmt::format("there is no lap {}: laps go from 1 to 99", lap));
+  Require(lap >= 1 && lap <= 99, "laps",
+          fmt::format("there is no lap {}: laps go from 1 to 99", lap));
   Random random(SubSeed(SubSeed(seed, 0x1a9), static_cast<std::uint64_t>(lap)));
   const double bias = random.Uniform(-0.3, 0.3);
-  const Sway lateral(random, 40, 160), nod(random, 12, 60), lean(random, 12, 60), haste(random, 60, 200);
+  const Sway lateral(random, 40, 160), nod(random, 12, 60), lean(random, 12, 60),
+      haste(random, 60, 200);
   Drive drive;
   drive.number = lap;
   double time = MadeUpStart(lap, seed);
@@ -196,7 +201,8 @@ Drive Route::DriveOf(int lap, std::uint64_t seed) const {
 }
 
 StereoCamera UfesCamera() {
-  return {{.width = 640, .height = 480, .fx = 489.44, .fy = 489.44, .cx = 323.5, .cy = 237.0}, 0.24004};
+  return {{.width = 640, .height = 480, .fx = 489.44, .fy = 489.44, .cx = 323.5, .cy = 237.0},
+          0.24004};
 }
 
 SE3 UfesCarFromCamera() {

@@ -72,7 +72,8 @@ TEST(TumRoute, MayCrossItselfAndEndAbruptly) {
 }
 
 TEST(TumRoute, RefusesWhatIsNoRoute) {
-  const auto refuses = [](const std::string& name, const std::string& text, const std::string& why) {
+  const auto refuses = [](const std::string& name, const std::string& text,
+                          const std::string& why) {
     try {
       TumRoute(TumFile(name, text));
       ADD_FAILURE() << name << " was taken";

@@ -32,8 +32,7 @@ struct Scene::Cutout {
     for (unsigned i = 0; i < args->N; ++i) {
       if (args->valid[i] != -1) continue;
       const Surface& surface = self.mesh->surfaces[RTCHitN_primID(args->hit, args->N, i)];
-      const Texture& texture =
-          (*self.pictures)[(*self.palette)[surface.material].picture];
+      const Texture& texture = (*self.pictures)[(*self.palette)[surface.material].picture];
       int level = kShadowLevel;
       if (spread > 0) {
         const float width = RTCRayN_tfar(args->ray, args->N, i) * spread * surface.gu.norm() *
@@ -81,8 +80,9 @@ RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout) {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
     if (!mesh.quads.empty()) {
       // Embree reads vertices sixteen bytes at a time, so the last one needs room behind it.
-      auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.vertices.size()));
+      auto* vertices = static_cast<Vec3*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                  sizeof(Vec3), mesh.vertices.size()));
       std::copy(mesh.vertices.begin(), mesh.vertices.end(), vertices);
       auto* quads = static_cast<std::array<std::uint32_t, 4>*>(rtcSetNewGeometryBuffer(
           geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, mesh.quads.size()));

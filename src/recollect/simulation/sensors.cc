@@ -68,7 +68,8 @@ std::vector<GpsFix> SimulateGps(const std::vector<double>& times,
   std::vector<double> smooth(n);
   constexpr std::ptrdiff_t kHalf = 4;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto low = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(i) - kHalf));
+    const auto low = static_cast<std::size_t>(
+        std::max<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(i) - kHalf));
     const std::size_t high = std::min(n, i + kHalf + 1);
     smooth[i] = std::accumulate(reception.begin() + static_cast<std::ptrdiff_t>(low),
                                 reception.begin() + static_cast<std::ptrdiff_t>(high), 0.0) /
@@ -85,7 +86,10 @@ std::vector<GpsFix> SimulateGps(const std::vector<double>& times,
   for (std::size_t i = 0; i < n; ++i) {
     GpsFix& fix = fixes[i];
     fix.time = times[i];
-    fix.quality = smooth[i] < none ? 0 : smooth[i] < differential ? 2 : smooth[i] < floating ? 5 : 4;
+    fix.quality = smooth[i] < none           ? 0
+                  : smooth[i] < differential ? 2
+                  : smooth[i] < floating     ? 5
+                                             : 4;
     // The length of a two-dimensional normal error averages 1.2533 standard deviations.
     const double mean = fix.quality == 4 ? 0.20 : fix.quality == 0 ? 80.0 : 0.60;
     fix.p_world = positions[i] +
@@ -95,19 +99,20 @@ std::vector<GpsFix> SimulateGps(const std::vector<double>& times,
 }
 
 std::string GgaSentence(const GpsFix& fix, double clock, const Eigen::Vector2d& origin_utm) {
-  const Geodetic place = FromUtm(origin_utm.x() + fix.p_world.x(), origin_utm.y() - fix.p_world.y());
+  const Geodetic place =
+      FromUtm(origin_utm.x() + fix.p_world.x(), origin_utm.y() - fix.p_world.y());
   const auto angle = [](double degrees, int digits) {
     const double size = std::abs(degrees), whole = std::floor(size);
     return fmt::format("{:0{}.0f}{:010.7f}", whole, digits, (size - whole) * 60);
   };
   const double day = std::fmod(clock, 86400);
   const int hour = static_cast<int>(day / 3600), minute = static_cast<int>(day / 60) % 60;
-  const std::string body = fmt::format(
-      "GPGGA,{:02}{:02}{:05.2f},{},{},{},{},{},{:02},{:.1f},{:.3f},M,-7.0,M,{},", hour, minute,
-      std::fmod(day, 60), angle(place.latitude, 2), place.latitude < 0 ? 'S' : 'N',
-      angle(place.longitude, 3), place.longitude < 0 ? 'W' : 'E', fix.quality,
-      fix.quality == 0 ? 3 : 12, fix.quality == 4 ? 0.8 : 1.9, fix.p_world.z(),
-      fix.quality >= 2 ? "1.0" : "");
+  const std::string body =
+      fmt::format("GPGGA,{:02}{:02}{:05.2f},{},{},{},{},{},{:02},{:.1f},{:.3f},M,-7.0,M,{},", hour,
+                  minute, std::fmod(day, 60), angle(place.latitude, 2),
+                  place.latitude < 0 ? 'S' : 'N', angle(place.longitude, 3),
+                  place.longitude < 0 ? 'W' : 'E', fix.quality, fix.quality == 0 ? 3 : 12,
+                  fix.quality == 4 ? 0.8 : 1.9, fix.p_world.z(), fix.quality >= 2 ? "1.0" : "");
   unsigned sum = 0;
   for (const char c : body) sum ^= static_cast<unsigned char>(c);
   return fmt::format("${}*{:02X}", body, sum);
@@ -126,9 +131,9 @@ std::vector<WheelReading> SimulateWheels(const Drive& drive, std::uint64_t seed)
     const double speed = motion.translation().x() / span;
     const double turn = std::atan2(motion.rotation()(1, 0), motion.rotation()(0, 0)) / span;
     const double steering = std::abs(speed) > 0.3 ? std::atan(kWheelbase * turn / speed) : 0;
-    readings.push_back({drive.times[i], speed * scale + 0.05 * random.Normal(),
-                        std::clamp(steering, -0.6, 0.6) + bias +
-                            0.2 * std::numbers::pi / 180 * random.Normal()});
+    readings.push_back(
+        {drive.times[i], speed * scale + 0.05 * random.Normal(),
+         std::clamp(steering, -0.6, 0.6) + bias + 0.2 * std::numbers::pi / 180 * random.Normal()});
   }
   return readings;
 }

@@ -29,8 +29,9 @@ TEST(Gps, HasTheQualityAndErrorsOfTheRealOne) {
     times.push_back(i * 0.2);
     positions.emplace_back(i, 0.1 * i, 0);
   }
-  const auto fixes = SimulateGps(times, positions, [](const Eigen::Vector3d& p) {
-    return 0.7 + 0.3 * std::sin(p.x() / 40); }, 5);
+  const auto fixes = SimulateGps(
+      times, positions, [](const Eigen::Vector3d& p) { return 0.7 + 0.3 * std::sin(p.x() / 40); },
+      5);
   std::map<int, double> count, error;
   int runs = 0;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
@@ -62,8 +63,8 @@ TEST(Wheels, TellTheMotion) {
   for (int i = 0; i < 500; ++i) {
     const double t = i * 0.06, yaw = kRate * t, r = kSpeed / kRate;
     drive.times.push_back(t);
-    drive.world_from_car.push_back(SE3::FromRotationVector(
-        {0, 0, yaw}, {r * std::sin(yaw), -r * std::cos(yaw), 0}));
+    drive.world_from_car.push_back(
+        SE3::FromRotationVector({0, 0, yaw}, {r * std::sin(yaw), -r * std::cos(yaw), 0}));
   }
   double speed = 0, steering = 0;
   const auto readings = SimulateWheels(drive, 3);
@@ -80,7 +81,8 @@ TEST(Faults, AreParsedAndDrawn) {
   EXPECT_NEAR(black / 6000.0, 0.2, 0.03);
   EXPECT_EQ(FaultOf(ParseFaults("none"), 7, 1), Fault::kNone);
   EXPECT_EQ(ParseFaults("all").entries.size(), 6U);
-  for (const char* wrong : {"rain", "black=2", "black=x", "black=", "black=0.5,frozen=0.5", ",", "=0.1"}) {
+  for (const char* wrong :
+       {"rain", "black=2", "black=x", "black=", "black=0.5,frozen=0.5", ",", "=0.1"}) {
     EXPECT_THROW(ParseFaults(wrong), Error) << wrong;
   }
 }

@@ -66,7 +66,8 @@ Shaded Surfaced(const Scene& scene, const PictureSet& pictures, float wetness, c
   out.gloss = material.gloss;
   if (wetness > 0 && material.ground) {
     const float puddle = SmoothStep(
-        0.45F, 0.6F, pictures.variation().Sample(point.x() / 19, point.y() / 19, width / 19, 0, 0).x());
+        0.45F, 0.6F,
+        pictures.variation().Sample(point.x() / 19, point.y() / 19, width / 19, 0, 0).x());
     out.albedo *= 1 - wetness * 0.45F;
     out.gloss = std::max(out.gloss, wetness * (0.25F + 0.75F * puddle));
   }

@@ -60,7 +60,8 @@ std::vector<std::size_t> ChooseFrames(const Drive& drive, const SimulateOptions&
   const std::vector<std::size_t> all = SampleFrames(lap, o.spacing);
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < all.size(); k += static_cast<std::size_t>(o.every)) {
-    if (FaultOf(faults, static_cast<std::int64_t>(k), seed) != Fault::kDropped) chosen.push_back(all[k]);
+    if (FaultOf(faults, static_cast<std::int64_t>(k), seed) != Fault::kDropped)
+      chosen.push_back(all[k]);
   }
   return chosen;
 }
@@ -74,8 +75,8 @@ std::string UtcText(double unix_time) {
 }
 
 // Everything that a lap's pictures follow from; two runs that agree in it may share frames.
-std::string Describe(const SimulateOptions& o, const Route& route, const Drive& drive, const Day& day,
-                     std::size_t frames) {
+std::string Describe(const SimulateOptions& o, const Route& route, const Drive& drive,
+                     const Day& day, std::size_t frames) {
   const Change& c = o.change;
   return fmt::format(
       "rendered, not recorded: lap {} of the simulated route {}\n"
@@ -84,28 +85,37 @@ std::string Describe(const SimulateOptions& o, const Route& route, const Drive& 
       "change: strength {}, light {}, structures {}, traffic {}, season {}\n"
       "camera: baseline {}, rolling shutter {} s, JPEG {}, stereo {}, depth {} step {}\n"
       "faults: {}\nseed: {}\nversion: {}\n",
-      drive.number, route.name, UtcText(drive.times.front()), drive.times.front(), Name(day.weather),
-      std::asin(day.to_sun.z()) / kDegree, frames, o.spacing, o.every, route.origin_utm.x(),
-      route.origin_utm.y(), c.strength, c.light, c.structures, c.traffic, c.season, o.baseline,
-      o.rolling_shutter, o.jpeg_quality, o.stereo, o.depth, o.depth_step, o.faults, o.seed, 1);
+      drive.number, route.name, UtcText(drive.times.front()), drive.times.front(),
+      Name(day.weather), std::asin(day.to_sun.z()) / kDegree, frames, o.spacing, o.every,
+      route.origin_utm.x(), route.origin_utm.y(), c.strength, c.light, c.structures, c.traffic,
+      c.season, o.baseline, o.rolling_shutter, o.jpeg_quality, o.stereo, o.depth, o.depth_step,
+      o.faults, o.seed, 1);
 }
 
 std::string Readme(const SimulateOptions& o, const Route& route) {
   return fmt::format(
       "# Laps of a simulated campus\n\n"
-      "These pictures are rendered, not photographs: a world made up by `recollect simulate` around the\n"
+      "These pictures are rendered, not photographs: a world made up by `recollect simulate` "
+      "around the\n"
       "route `{}` (seed {}, change {}).\n\n"
       "In each `lap-NN/`:\n\n"
-      "- `image_2/%06d.jpg`: left camera, 640 x 480, no distortion; `image_3/`: right camera, {} m to the\n"
+      "- `image_2/%06d.jpg`: left camera, 640 x 480, no distortion; `image_3/`: right camera, {} m "
+      "to the\n"
       "  right, where there is one.\n"
-      "- `depth/%06d.png`: true distance along the left camera's z axis in centimetres, 16 bits; pixel\n"
-      "  (i, j) belongs to pixel ({}i, {}j) of the image. 0: sky, or 200 m and more. Moving things count.\n"
-      "- `poses.txt`: left camera to world, 3x4 row-major, one line a frame. Camera axes: x right, y down,\n"
+      "- `depth/%06d.png`: true distance along the left camera's z axis in centimetres, 16 bits; "
+      "pixel\n"
+      "  (i, j) belongs to pixel ({}i, {}j) of the image. 0: sky, or 200 m and more. Moving things "
+      "count.\n"
+      "- `poses.txt`: left camera to world, 3x4 row-major, one line a frame. Camera axes: x right, "
+      "y down,\n"
       "  z forward. World: metres, x north, y west, z up, the same in all laps.\n"
-      "- `times.txt`: seconds from the lap's start, one line a frame. `calib.txt`: KITTI's P0..P3.\n"
-      "- `gps.csv`: time,x,y,z,quality of the left camera, with errors; `gps.nmea`: the same as GGA sentences.\n"
+      "- `times.txt`: seconds from the lap's start, one line a frame. `calib.txt`: KITTI's "
+      "P0..P3.\n"
+      "- `gps.csv`: time,x,y,z,quality of the left camera, with errors; `gps.nmea`: the same as "
+      "GGA sentences.\n"
       "- `odometry.csv`: time,speed,steering of the wheels, with errors; m/s and radians.\n"
-      "- `lap.txt`: date, weather, sun and the options it was made with; `faults.csv`, where faults were\n"
+      "- `lap.txt`: date, weather, sun and the options it was made with; `faults.csv`, where "
+      "faults were\n"
       "  asked for: frame,fault.\n",
       route.name, o.seed, o.change.strength, o.baseline, o.depth_step, o.depth_step);
 }
@@ -113,13 +123,18 @@ std::string Readme(const SimulateOptions& o, const Route& route) {
 // Renders what is missing of one lap and completes it.
 class LapJob {
  public:
-  LapJob(const SimulateOptions& options, const Route& route, const Drive& drive, const FaultPlan& faults)
-      : options_(options), route_(route), drive_(drive), faults_(faults),
+  LapJob(const SimulateOptions& options, const Route& route, const Drive& drive,
+         const FaultPlan& faults)
+      : options_(options),
+        route_(route),
+        drive_(drive),
+        faults_(faults),
         fault_seed_(SubSeed(options.seed, 1000 + static_cast<std::uint64_t>(drive.number))),
         day_(MakeDay(drive.times.front(), options.change, options.weather, options.seed)),
         frames_(ChooseFrames(drive, options, faults, fault_seed_)),
         writer_(options.out, fmt::format("lap-{:02}", drive.number),
-                Describe(options, route, drive, day_, frames_.size()), options.stereo, options.depth) {}
+                Describe(options, route, drive, day_, frames_.size()), options.stereo,
+                options.depth) {}
 
   const Day& day() const { return day_; }
   std::int64_t size() const { return static_cast<std::int64_t>(frames_.size()); }
@@ -180,7 +195,8 @@ class LapJob {
     const std::vector<GpsFix> fixes = SimulateGps(
         times, positions, [&](const Eigen::Vector3d& p) { return renderer.OpenSky(p); },
         SubSeed(day_.seed, 41));
-    for (const GpsFix& fix : fixes) gga += GgaSentence(fix, start + fix.time, route_.origin_utm) + "\r\n";
+    for (const GpsFix& fix : fixes)
+      gga += GgaSentence(fix, start + fix.time, route_.origin_utm) + "\r\n";
     for (const WheelReading& w : SimulateWheels(drive_, SubSeed(day_.seed, 42))) {
       wheels += fmt::format("{:.4f},{:.4f},{:.5f}\n", w.time - start, w.speed, w.steering);
     }
@@ -215,8 +231,10 @@ std::vector<int> ParseLaps(std::string_view list, int count) {
   const auto number = [&](std::string_view text) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    Require(error == std::errc() && end == text.data() + text.size() && value >= 1 && value <= count, "laps",
-            fmt::format("'{}' is no lap", text), fmt::format("take numbers from 1 to {}, as in 1,3-5", count));
+    Require(
+        error == std::errc() && end == text.data() + text.size() && value >= 1 && value <= count,
+        "laps", fmt::format("'{}' is no lap", text),
+        fmt::format("take numbers from 1 to {}, as in 1,3-5", count));
     return value;
   };
   while (true) {
@@ -247,7 +265,8 @@ SimulateResult Simulate(const SimulateOptions& options, const ProgressSink& prog
   AtomicWrite(options.out / "README.md", Readme(options, route));
   if (!route.registration.empty()) {
     std::string text = "# x y z of the car on an earlier, unrendered drive\n";
-    for (const auto& p : route.registration) text += fmt::format("{:.3f} {:.3f} {:.3f}\n", p.x(), p.y(), p.z());
+    for (const auto& p : route.registration)
+      text += fmt::format("{:.3f} {:.3f} {:.3f}\n", p.x(), p.y(), p.z());
     AtomicWrite(options.out / "registration.txt", text);
   }
 
@@ -263,7 +282,8 @@ SimulateResult Simulate(const SimulateOptions& options, const ProgressSink& prog
     result.rendered += missing;
     job.Run(campus, pictures, pool, [&] {
       const std::lock_guard lock(mutex);
-      Report(progress, fmt::format("lap {:02}", number), ++done, job.size(), Name(job.day().weather));
+      Report(progress, fmt::format("lap {:02}", number), ++done, job.size(),
+             Name(job.day().weather));
     });
     result.laps.push_back({number, job.size(), Name(job.day().weather),
                            std::asin(static_cast<double>(job.day().to_sun.z())) / kDegree});

@@ -13,22 +13,22 @@ namespace recollect::simulation {
 
 // What to render and where to put it.
 struct SimulateOptions {
-  std::string route = "ring";    // "ring", "ufes:FOLDER" or a TUM trajectory "FILE.tum"
-  std::string laps = "1-3";      // such as "1,2,5-7" or, for recorded routes, "all"
-  double spacing = 1;            // metres between frames (a turn of 10 degrees makes one, too)
-  int every = 1;                 // render only every n-th of these frames
-  std::filesystem::path out;     // the folder of laps to make or to go on with
-  bool stereo = false;           // right images as well
-  bool depth = false;            // true depth as well
-  int depth_step = 2;            // of every n-th pixel of every n-th row; 1 or 2
-  double baseline = 0.24004;     // metres between the cameras
+  std::string route = "ring";  // "ring", "ufes:FOLDER" or a TUM trajectory "FILE.tum"
+  std::string laps = "1-3";    // such as "1,2,5-7" or, for recorded routes, "all"
+  double spacing = 1;          // metres between frames (a turn of 10 degrees makes one, too)
+  int every = 1;               // render only every n-th of these frames
+  std::filesystem::path out;   // the folder of laps to make or to go on with
+  bool stereo = false;         // right images as well
+  bool depth = false;          // true depth as well
+  int depth_step = 2;          // of every n-th pixel of every n-th row; 1 or 2
+  double baseline = 0.24004;   // metres between the cameras
   Change change;
   Weather weather = Weather::kByDay;
-  std::string faults = "none";   // see ParseFaults
-  double rolling_shutter = 0;    // seconds from the first row to the last; 0: global shutter
+  std::string faults = "none";  // see ParseFaults
+  double rolling_shutter = 0;   // seconds from the first row to the last; 0: global shutter
   int jpeg_quality = 92;
-  std::uint64_t seed = 1;        // of the campus and of all that happens there
-  int threads = 0;               // 0: one for each core; changes no bit of the result
+  std::uint64_t seed = 1;  // of the campus and of all that happens there
+  int threads = 0;         // 0: one for each core; changes no bit of the result
 };
 
 struct SimulateResult {

@@ -55,7 +55,11 @@ TEST(Simulate, GoesOnWhereItStopped) {
   const SimulateOptions whole = Short(Fresh("whole")), parts = Short(Fresh("parts"));
   Simulate(whole);
   struct Stop {};
-  EXPECT_THROW(Simulate(parts, [](const Progress& p) { if (p.done == 2) throw Stop(); }), Stop);
+  EXPECT_THROW(Simulate(parts,
+                        [](const Progress& p) {
+                          if (p.done == 2) throw Stop();
+                        }),
+               Stop);
   EXPECT_FALSE(fs::exists(parts.out / "lap-02"));  // nothing that a reader would take for whole
   EXPECT_THROW(ReadLaps(parts.out), Error);
   const SimulateResult rest = Simulate(parts);

@@ -77,10 +77,12 @@ Site::Site(const Route& route, const std::vector<Street>& streets, std::uint64_t
     for (std::size_t i = 0; i + (street.closed ? 0 : 1) < n; ++i) {
       const auto& a = street.stations[i];
       const auto& b = street.stations[(i + 1) % n];
-      cv::fillConvexPoly(land, Cells({a.middle.head<2>() - a.left * a.edge_right(),
-                                      b.middle.head<2>() - b.left * b.edge_right(),
-                                      b.middle.head<2>() + b.left * b.edge_left(),
-                                      a.middle.head<2>() + a.left * a.edge_left()}), 0);
+      cv::fillConvexPoly(land,
+                         Cells({a.middle.head<2>() - a.left * a.edge_right(),
+                                b.middle.head<2>() - b.left * b.edge_right(),
+                                b.middle.head<2>() + b.left * b.edge_left(),
+                                a.middle.head<2>() + a.left * a.edge_left()}),
+                         0);
     }
   }
   for (const Drive& drive : route.drives) {
@@ -155,7 +157,9 @@ bool Site::IsFree(const std::vector<Vec2>& outline) const {
   return cv::countNonZero(mask & taken_(box)) == 0;
 }
 
-void Site::Take(const std::vector<Vec2>& outline) { cv::fillConvexPoly(taken_, Cells(outline), 255); }
+void Site::Take(const std::vector<Vec2>& outline) {
+  cv::fillConvexPoly(taken_, Cells(outline), 255);
+}
 
 bool Site::Claim(const std::vector<Vec2>& outline) {
   if (!IsFree(outline)) return false;

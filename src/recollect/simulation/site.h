@@ -14,7 +14,7 @@ namespace recollect::simulation {
 struct Street {
   struct Station {
     Vec3 middle = Vec3::Zero();
-    Vec2 left = Vec2::UnitY();  // unit vector across, to the left of the way
+    Vec2 left = Vec2::UnitY();            // unit vector across, to the left of the way
     float half_left = 0, half_right = 0;  // width of the carriageway to either side, metres
     float bay_left = 0, bay_right = 0;    // width of parking bays beyond it, 0: none
     float edge_left() const { return half_left + bay_left; }

@@ -16,8 +16,11 @@ Color Transmittance(float mass) { return (Color(-0.075F, -0.15F, -0.30F) * mass)
 }  // namespace
 
 Sky::Sky(const Day& day, const PictureSet& pictures)
-    : noise_(&pictures.variation()), to_sun_(day.to_sun), cover_(day.cloud),
-      haze_(3.0F / day.visibility), drift_u_(static_cast<float>(day.Draw(11))),
+    : noise_(&pictures.variation()),
+      to_sun_(day.to_sun),
+      cover_(day.cloud),
+      haze_(3.0F / day.visibility),
+      drift_u_(static_cast<float>(day.Draw(11))),
       drift_v_(static_cast<float>(day.Draw(12))) {
   const float height = std::asin(std::clamp(to_sun_.z(), -1.0F, 1.0F));  // radians
   const float mass = 1 / (std::max(0.0F, to_sun_.z()) + 0.05F);
@@ -60,7 +63,8 @@ Color Sky::Radiance(const Vec3& d) const {
     const Color small = noise_->Sample(u * 4.3F, v * 4.3F, 0.004F, 0, 0);
     const float density = 0.68F * big.x() + 0.32F * small.y();
     const float edge = 1 - cover_;
-    const float alpha = SmoothStep(edge - 0.08F, edge + 0.22F, density) * SmoothStep(0.01F, 0.1F, z);
+    const float alpha =
+        SmoothStep(edge - 0.08F, edge + 0.22F, density) * SmoothStep(0.01F, 0.1F, z);
     const float thick = SmoothStep(edge + 0.05F, edge + 0.5F, density);
     color = Mix(color, Mix(cloud_light_, cloud_dark_, thick), alpha);
   }

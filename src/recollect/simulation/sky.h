@@ -16,7 +16,8 @@ class Sky {
   Color Reflection(const Vec3& d) const;
   // Light from the whole sky and ground on a surface with normal `n`.
   Color Ambient(const Vec3& n) const {
-    return ambient_middle_ + ambient_slope_ * n.z() + ambient_sunward_ * std::max(0.0F, n.dot(side_));
+    return ambient_middle_ + ambient_slope_ * n.z() +
+           ambient_sunward_ * std::max(0.0F, n.dot(side_));
   }
   // Light of the unobstructed sun on a surface square to it.
   const Color& sun() const { return sun_; }

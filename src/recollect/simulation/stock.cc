@@ -7,12 +7,12 @@ namespace recollect::simulation {
 Stock::Stock(Palette& palette) {
   const auto add = [&](Picture picture, const Color& tint, float tile, float gloss = 0,
                        float patchiness = 0) {
-    return palette.Add({.picture = picture, .tint = tint, .tile = tile, .gloss = gloss,
-                        .patchiness = patchiness});
+    return palette.Add(
+        {.picture = picture, .tint = tint, .tile = tile, .gloss = gloss, .patchiness = patchiness});
   };
   const auto ground = [&](Picture picture, const Color& tint, float tile, float patchiness) {
-    return palette.Add({.picture = picture, .tint = tint, .tile = tile, .patchiness = patchiness,
-                        .ground = true});
+    return palette.Add(
+        {.picture = picture, .tint = tint, .tile = tile, .patchiness = patchiness, .ground = true});
   };
   const auto leaves = [&](Picture picture, const Color& tint) {
     return palette.Add({.picture = picture, .tint = tint, .patchiness = 0.3F, .foliage = true});
@@ -31,7 +31,8 @@ Stock::Stock(Palette& palette) {
   slabs = ground(Picture::kSlabs, gray(1), 4, 0.6F);
   pavers = ground(Picture::kPavers, gray(1), 2, 0.6F);
   forest = add(Picture::kForest, gray(1), 90, 0, 0.7F);
-  hedge = palette.Add({.picture = Picture::kHedge, .tile = 1.9F, .patchiness = 0.6F, .foliage = true});
+  hedge =
+      palette.Add({.picture = Picture::kHedge, .tile = 1.9F, .patchiness = 0.6F, .foliage = true});
   bark = add(Picture::kBark, gray(1), 1.2F);
   steel = add(Picture::kMetal, {1.0F, 1.02F, 1.05F}, 3, 0.15F, 0.3F);
   rust = add(Picture::kMetal, {0.7F, 0.5F, 0.38F}, 2, 0, 0.4F);

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLane = 3.3;          // width of a lane, metres
-constexpr double kRoomBeside = 1.5;    // from a drive's line to the kerb: half a car and some
+constexpr double kLane = 3.3;        // width of a lane, metres
+constexpr double kRoomBeside = 1.5;  // from a drive's line to the kerb: half a car and some
 
 // Points found by place, in cells of 8 m.
 class PointIndex {
@@ -64,7 +64,8 @@ void Extend(std::vector<Vector3d>& line, double beyond) {
   const Vector3d out = (line[n - 1] - line[n - 1 - back]).normalized();
   const Vector3d in = (line[0] - line[back]).normalized();
   std::vector<Vector3d> longer;
-  for (double s = beyond; s >= 1; s -= 1) longer.push_back(line[0] + Vector3d(in.x(), in.y(), 0) * s);
+  for (double s = beyond; s >= 1; s -= 1)
+    longer.push_back(line[0] + Vector3d(in.x(), in.y(), 0) * s);
   longer.insert(longer.end(), line.begin(), line.end());
   for (double s = 1; s <= beyond; s += 1) {
     longer.push_back(line[n - 1] + Vector3d(out.x(), out.y(), 0) * s);
@@ -108,15 +109,16 @@ Street MakeStreet(std::vector<Vector3d> line, double beyond) {
   const auto n = static_cast<std::ptrdiff_t>(line.size());
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const auto at = [&](std::ptrdiff_t k) {
-      return line[static_cast<std::size_t>(street.closed ? (k + n) % n
-                                                         : std::clamp<std::ptrdiff_t>(k, 0, n - 1))];
+      return line[static_cast<std::size_t>(
+          street.closed ? (k + n) % n : std::clamp<std::ptrdiff_t>(k, 0, n - 1))];
     };
     const Eigen::Vector2d ahead = (at(i + 2) - at(i - 2)).head<2>().normalized();
     const Eigen::Vector2d left(-ahead.y(), ahead.x());
     Street::Station station;
     const Vector3d& p = at(i);
-    station.middle = Vec3(static_cast<float>(p.x() + left.x() * kLane / 2),
-                          static_cast<float>(p.y() + left.y() * kLane / 2), static_cast<float>(p.z()));
+    station.middle =
+        Vec3(static_cast<float>(p.x() + left.x() * kLane / 2),
+             static_cast<float>(p.y() + left.y() * kLane / 2), static_cast<float>(p.z()));
     station.left = left.cast<float>();
     station.half_left = station.half_right = static_cast<float>(kLane);
     street.stations.push_back(station);
@@ -162,7 +164,8 @@ void AddBays(Street& street, std::uint64_t seed) {
     auto i = static_cast<std::size_t>(random.Uniform(5, 60));
     while (i < n) {
       const auto end = std::min(n, i + static_cast<std::size_t>(random.Uniform(14, 50)));
-      for (; i < end; ++i) (left ? street.stations[i].bay_left : street.stations[i].bay_right) = 2.3F;
+      for (; i < end; ++i)
+        (left ? street.stations[i].bay_left : street.stations[i].bay_right) = 2.3F;
       i += static_cast<std::size_t>(random.Uniform(25, 110));
     }
   }
@@ -174,7 +177,8 @@ Vec3 PointOn(const Street& street, float s, float side) {
   const auto n = static_cast<std::ptrdiff_t>(street.stations.size());
   const float whole = std::floor(s), part = s - whole;
   const auto at = [&](std::ptrdiff_t i) -> const Street::Station& {
-    const std::ptrdiff_t k = street.closed ? ((i % n) + n) % n : std::clamp<std::ptrdiff_t>(i, 0, n - 1);
+    const std::ptrdiff_t k =
+        street.closed ? ((i % n) + n) % n : std::clamp<std::ptrdiff_t>(i, 0, n - 1);
     return street.stations[static_cast<std::size_t>(k)];
   };
   const auto& a = at(static_cast<std::ptrdiff_t>(whole));

@@ -61,7 +61,8 @@ class Kerbside {
         const Vec3 top = p_.build.place() * Vec3(0, 0, height - 0.25F);
         if (wired && (top - last).norm() < 45) {
           const Vec3 across = p_.build.place().linear() * Vec3(0, 0.8F, 0);
-          for (const float t : {-1.0F, 0.1F, 1.0F}) BuildWire(last + across * t, top + across * t, p_.stock, p_.build);
+          for (const float t : {-1.0F, 0.1F, 1.0F})
+            BuildWire(last + across * t, top + across * t, p_.stock, p_.build);
           BuildWire(last - Vec3(0, 0, 2), top - Vec3(0, 0, 2), p_.stock, p_.build);
         }
         last = top;
@@ -78,7 +79,8 @@ class Kerbside {
       const bool left = random.Uniform() < 0.35;
       const int sign = static_cast<int>(random.Index(16));
       // Signs come and go; on the left they turn their face to us as often as their back.
-      if (Stand(s, left, 0.55F, left && random.Uniform() < 0.6 ? kTurned : 0) && p_.Stands(id, 0.15)) {
+      if (Stand(s, left, 0.55F, left && random.Uniform() < 0.6 ? kTurned : 0) &&
+          p_.Stands(id, 0.15)) {
         BuildTrafficSign(sign, p_.stock, p_.build);
       }
     }
@@ -90,7 +92,8 @@ class Kerbside {
     for (float s = Draw(random, 0, 60); s < street_.length(); s += Draw(random, 20, 120)) {
       const bool left = random.Uniform() < 0.5;
       const auto& list = random.Uniform() < 0.5 ? p_.plants.palms : p_.plants.tall;
-      const float end = std::min(s + Draw(random, 25, 90), street_.length()), gap = Draw(random, 6, 12);
+      const float end = std::min(s + Draw(random, 25, 90), street_.length()),
+                  gap = Draw(random, 6, 12);
       for (; s < end; s += gap) {
         const Vec2 at = p_.Beside(street_, s, left, 1.1F).At(0, 0);
         p_.Plant(list, SubSeed(SubSeed(seed_, 44), k++), at, 0.95F);
@@ -113,10 +116,12 @@ class Kerbside {
       Random shape(id);
       if (kind < 0.35) {
         if (Stand(s, left, 0.6F) && p_.Stands(id, 0.3)) {
-          BuildBin(shape.Uniform() < 0.5 ? p_.stock.rust : p_.stock.yellow_paint, p_.stock, p_.build);
+          BuildBin(shape.Uniform() < 0.5 ? p_.stock.rust : p_.stock.yellow_paint, p_.stock,
+                   p_.build);
         }
       } else if (kind < 0.5) {
-        if (Stand(s, left, 0.45F, 0, 2.5F)) BuildBollards(2 + static_cast<int>(shape.Index(5)), p_.stock, p_.build);
+        if (Stand(s, left, 0.45F, 0, 2.5F))
+          BuildBollards(2 + static_cast<int>(shape.Index(5)), p_.stock, p_.build);
       } else if (kind < 0.62) {
         if (Stand(s, left, 2.0F, 0, 3.2F)) BuildBusStop(shape, p_.stock, p_.build);
       } else if (kind < 0.78) {
@@ -148,7 +153,8 @@ class Kerbside {
         if (run < 4 || run % 6 != 4) continue;
         const float side = left ? station.half_left + 1.2F : -station.half_right - 1.2F;
         const Vec3 at = p_.site.OnGround(PointOn(street_, static_cast<float>(i), side));
-        p_.Park(SubSeed(SubSeed(seed_, 66), k++), at, street_.Heading(i) + (left ? kTurned : 0), 0.62);
+        p_.Park(SubSeed(SubSeed(seed_, 66), k++), at, street_.Heading(i) + (left ? kTurned : 0),
+                0.62);
       }
     }
   }

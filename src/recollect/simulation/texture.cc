@@ -27,7 +27,8 @@ Float4 Bilinear(const std::uint8_t* level, int size, float u, float v) {
   const float fx = std::floor(x), fy = std::floor(y);
   const int mask = size - 1;
   const int x0 = static_cast<int>(fx) & mask, x1 = (x0 + 1) & mask;
-  const int y0 = (static_cast<int>(fy) & mask) * size, y1 = ((static_cast<int>(fy) + 1) & mask) * size;
+  const int y0 = (static_cast<int>(fy) & mask) * size,
+            y1 = ((static_cast<int>(fy) + 1) & mask) * size;
   const float a = x - fx, b = y - fy;
   const Float4 top = Load(level + 4 * (y0 + x0)) * (1 - a) + Load(level + 4 * (y0 + x1)) * a;
   const Float4 bottom = Load(level + 4 * (y1 + x0)) * (1 - a) + Load(level + 4 * (y1 + x1)) * a;
@@ -43,9 +44,9 @@ float CoverageScale(const std::vector<Texel>& texels, float coverage) {
   std::vector<float> alpha;
   alpha.reserve(texels.size());
   for (const Texel& t : texels) alpha.push_back(t.alpha);
-  const auto rank = static_cast<std::ptrdiff_t>(
-      std::clamp((1 - coverage) * static_cast<float>(alpha.size()), 0.0F,
-                 static_cast<float>(alpha.size() - 1)));
+  const auto rank =
+      static_cast<std::ptrdiff_t>(std::clamp((1 - coverage) * static_cast<float>(alpha.size()),
+                                             0.0F, static_cast<float>(alpha.size() - 1)));
   std::nth_element(alpha.begin(), alpha.begin() + rank, alpha.end());
   const float median = alpha[static_cast<std::size_t>(rank)];
   return median > 0.01F ? 0.51F / median : 1.0F;
@@ -67,8 +68,8 @@ Texture Texture::Paint(int size, const std::function<Texel(float u, float v)>& p
   const float step = 1.0F / static_cast<float>(size);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      texels.push_back(paint((static_cast<float>(x) + 0.5F) * step,
-                             (static_cast<float>(y) + 0.5F) * step));
+      texels.push_back(
+          paint((static_cast<float>(x) + 0.5F) * step, (static_cast<float>(y) + 0.5F) * step));
     }
   }
   return {size, texels};
@@ -77,8 +78,8 @@ Texture Texture::Paint(int size, const std::function<Texel(float u, float v)>& p
 Texture::Texture(int size, const std::vector<Texel>& texels) : size_(size) {
   Require(size > 0 && std::has_single_bit(static_cast<unsigned>(size)), "texture",
           "its size must be a power of two");
-  const auto solid = std::count_if(texels.begin(), texels.end(),
-                                   [](const Texel& t) { return t.alpha > 0.5F; });
+  const auto solid =
+      std::count_if(texels.begin(), texels.end(), [](const Texel& t) { return t.alpha > 0.5F; });
   const float coverage = static_cast<float>(solid) / static_cast<float>(texels.size());
   std::vector<Texel> level = texels;
   for (int s = size;; s /= 2) {
@@ -143,8 +144,8 @@ bool Texture::Solid(float u, float v, int level) const {
   const float scale = static_cast<float>(size);
   const int x = static_cast<int>(u * scale + 4096.0F * scale) & (size - 1);
   const int y = static_cast<int>(v * scale + 4096.0F * scale) & (size - 1);
-  return solid_[offsets_[static_cast<std::size_t>(level)] + static_cast<std::size_t>(y * size + x)] >
-         127;
+  return solid_[offsets_[static_cast<std::size_t>(level)] +
+                static_cast<std::size_t>(y * size + x)] > 127;
 }
 
 }  // namespace recollect::simulation

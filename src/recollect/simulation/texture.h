@@ -37,9 +37,9 @@ class Texture {
   Color Trilinear(float u, float v, float lod) const;
 
   int size_ = 0, levels_ = 0;
-  std::vector<std::size_t> offsets_;       // first texel of each level
-  std::vector<std::uint8_t> rgba_;         // square roots of the colours, and alpha
-  std::vector<std::uint8_t> solid_;        // alpha alone, scaled to keep coverage in all levels
+  std::vector<std::size_t> offsets_;  // first texel of each level
+  std::vector<std::uint8_t> rgba_;    // square roots of the colours, and alpha
+  std::vector<std::uint8_t> solid_;   // alpha alone, scaled to keep coverage in all levels
 };
 
 }  // namespace recollect::simulation

@@ -51,30 +51,35 @@ Traffic::Traffic(const Campus& campus, const Vehicles& vehicles, const Day& day,
       const auto& station = street.stations[static_cast<std::size_t>(s)];
       const bool left = random.Uniform() < 0.5;
       const float off = Draw(random, 0.7, 2.2);
-      walkers_.push_back({k, static_cast<float>(s), left ? station.edge_left() + off : -station.edge_right() - off,
-                          Draw(random, 0.8, 1.5), Draw(random, 0, 6.28), Pick(random, vehicles.people)});
+      walkers_.push_back(
+          {k, static_cast<float>(s), left ? station.edge_left() + off : -station.edge_right() - off,
+           Draw(random, 0.8, 1.5), Draw(random, 0, 6.28), Pick(random, vehicles.people)});
     }
   }
 }
 
 double Traffic::Distance(double time) const {
   const auto& t = drive_.times;
-  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      std::upper_bound(t.begin(), t.end(), time) - t.begin(), 1, static_cast<std::ptrdiff_t>(t.size()) - 1));
+  const auto i = static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(std::upper_bound(t.begin(), t.end(), time) - t.begin(), 1,
+                                 static_cast<std::ptrdiff_t>(t.size()) - 1));
   const double share = std::clamp((time - t[i - 1]) / (t[i] - t[i - 1]), 0.0, 1.0);
   return distances_[i - 1] + share * (distances_[i] - distances_[i - 1]);
 }
 
 double Traffic::TimeAt(double distance) const {
-  const auto i = std::lower_bound(distances_.begin(), distances_.end(), distance) - distances_.begin();
-  return drive_.times[static_cast<std::size_t>(std::min<std::ptrdiff_t>(i, static_cast<std::ptrdiff_t>(drive_.times.size()) - 1))];
+  const auto i =
+      std::lower_bound(distances_.begin(), distances_.end(), distance) - distances_.begin();
+  return drive_.times[static_cast<std::size_t>(
+      std::min<std::ptrdiff_t>(i, static_cast<std::ptrdiff_t>(drive_.times.size()) - 1))];
 }
 
 Instance Traffic::OnDrive(double distance, double side, bool backwards, int model,
                           const Color& paint) const {
   const auto n = static_cast<std::ptrdiff_t>(distances_.size());
   const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      std::upper_bound(distances_.begin(), distances_.end(), distance) - distances_.begin(), 1, n - 1));
+      std::upper_bound(distances_.begin(), distances_.end(), distance) - distances_.begin(), 1,
+      n - 1));
   const double step = distances_[i] - distances_[i - 1];
   const double share = step > 0 ? std::clamp((distance - distances_[i - 1]) / step, 0.0, 1.0) : 0;
   const SE3 pose = Interpolate(drive_.world_from_car[i - 1], drive_.world_from_car[i], share);
@@ -92,7 +97,8 @@ std::vector<Instance> Traffic::At(double time) const {
   for (const Ahead& a : ahead_) {
     if (here < a.from || here > a.to) continue;
     const double size = static_cast<double>(vehicles_.lengths[static_cast<std::size_t>(a.model)]);
-    const double there = here + kBonnet + a.gap + a.sway * std::sin(time * 0.35 + a.from) + size / 2;
+    const double there =
+        here + kBonnet + a.gap + a.sway * std::sin(time * 0.35 + a.from) + size / 2;
     if (there + size / 2 < length) movers.push_back(OnDrive(there, 0, false, a.model, a.paint));
   }
   for (const Oncoming& o : oncoming_) {

@@ -36,7 +36,8 @@ class Traffic {
   double Distance(double time) const;
   double TimeAt(double distance) const;
   // On the ground, `distance` along the drive and `side` metres to its left.
-  Instance OnDrive(double distance, double side, bool backwards, int model, const Color& paint) const;
+  Instance OnDrive(double distance, double side, bool backwards, int model,
+                   const Color& paint) const;
 
   const Campus& campus_;
   const Vehicles& vehicles_;

@@ -27,8 +27,10 @@ class VehicleMaker {
   void Sides(const std::vector<Rib>& ribs, float z, float tuck) {
     for (std::size_t i = 0; i + 1 < ribs.size(); ++i) {
       const Rib &a = ribs[i], &b = ribs[i + 1];
-      build_.Quad({a.x, -a.half - tuck, z}, {b.x, -b.half - tuck, z}, {b.x, -b.half, b.z}, {a.x, -a.half, a.z});
-      build_.Quad({b.x, b.half + tuck, z}, {a.x, a.half + tuck, z}, {a.x, a.half, a.z}, {b.x, b.half, b.z});
+      build_.Quad({a.x, -a.half - tuck, z}, {b.x, -b.half - tuck, z}, {b.x, -b.half, b.z},
+                  {a.x, -a.half, a.z});
+      build_.Quad({b.x, b.half + tuck, z}, {a.x, a.half + tuck, z}, {a.x, a.half, a.z},
+                  {b.x, b.half, b.z});
     }
   }
   void Wheels(const std::vector<float>& xs, float radius, float half) {
@@ -47,28 +49,34 @@ class VehicleMaker {
     const float length = kind == 0 ? Draw(random, 3.5, 3.9) : Draw(random, 4.1, 4.8);
     const bool tall = kind == 2, box = kind == 0 || kind == 2;
     const float half = Draw(random, 0.80, 0.92), f = length / 2, base = 0.22F;
-    const float belt = tall ? 1.08F : Draw(random, 0.86, 0.95), roof = tall ? 1.72F : Draw(random, 1.4, 1.52);
+    const float belt = tall ? 1.08F : Draw(random, 0.86, 0.95),
+                roof = tall ? 1.72F : Draw(random, 1.4, 1.52);
     const float hood = f - Draw(random, 0.85, 1.15), screen = hood - Draw(random, 0.55, 0.8);
     const float back = box ? -f + 0.15F : -f + Draw(random, 0.5, 0.8);
     const float rear = kind == 3 ? -0.25F : (box ? -f + 0.45F : back + 0.5F);
     build_.Use(stock_.paint);
-    const std::vector<Rib> body = {{f, 0.55F, half * 0.92F}, {f - 0.12F, belt - 0.2F, half * 0.95F},
-                                   {hood, belt, half * 0.97F}, {back, belt + 0.03F, half * 0.97F},
-                                   {-f + 0.04F, belt, half * 0.94F}, {-f, 0.55F, half * 0.92F}};
+    const std::vector<Rib> body = {
+        {f, 0.55F, half * 0.92F},         {f - 0.12F, belt - 0.2F, half * 0.95F},
+        {hood, belt, half * 0.97F},       {back, belt + 0.03F, half * 0.97F},
+        {-f + 0.04F, belt, half * 0.94F}, {-f, 0.55F, half * 0.92F}};
     for (std::size_t i = 0; i + 1 < body.size(); ++i) Skin(body[i + 1], body[i]);
     std::vector<Rib> reverse(body.rbegin(), body.rend());
     Sides(reverse, base + 0.1F, 0.03F);
-    build_.Quad({f, -half, base}, {f, half, base}, {f, half * 0.92F, 0.55F}, {f, -half * 0.92F, 0.55F});
-    build_.Quad({-f, half, base}, {-f, -half, base}, {-f, -half * 0.92F, 0.55F}, {-f, half * 0.92F, 0.55F});
+    build_.Quad({f, -half, base}, {f, half, base}, {f, half * 0.92F, 0.55F},
+                {f, -half * 0.92F, 0.55F});
+    build_.Quad({-f, half, base}, {-f, -half, base}, {-f, -half * 0.92F, 0.55F},
+                {-f, half * 0.92F, 0.55F});
     // The cabin: glass all round under a painted roof.
     const float in = half * 0.78F, cabin_back = kind == 3 ? -0.75F : back;
-    const Rib a{hood, belt, half * 0.93F}, b{screen, roof, in}, c{rear, roof, in}, d{cabin_back, belt + 0.03F, half * 0.93F};
+    const Rib a{hood, belt, half * 0.93F}, b{screen, roof, in}, c{rear, roof, in},
+        d{cabin_back, belt + 0.03F, half * 0.93F};
     Skin(c, b);
     build_.Use(stock_.car_glass);
     Skin(b, a);
     Skin(d, c);
     for (const float s : {-1.0F, 1.0F}) {
-      const Vec3 p0(d.x, s * d.half, d.z), p1(a.x, s * a.half, a.z), p2(b.x, s * b.half, b.z), p3(c.x, s * c.half, c.z);
+      const Vec3 p0(d.x, s * d.half, d.z), p1(a.x, s * a.half, a.z), p2(b.x, s * b.half, b.z),
+          p3(c.x, s * c.half, c.z);
       s < 0 ? build_.Quad(p0, p1, p2, p3) : build_.Quad(p1, p0, p3, p2);
       build_.Use(stock_.paint);  // pillars
       for (const float x : {0.0F, 0.38F}) {
@@ -76,7 +84,8 @@ class VehicleMaker {
         const Vec3 foot(t, s * (half * 0.93F + 0.01F), belt), head(t, s * (in + 0.012F), roof);
         const Vec3 w(0.07F, 0, 0);
         if (x > 0) continue;
-        s < 0 ? build_.Quad(foot - w, foot + w, head + w, head - w) : build_.Quad(foot + w, foot - w, head - w, head + w);
+        s < 0 ? build_.Quad(foot - w, foot + w, head + w, head - w)
+              : build_.Quad(foot + w, foot - w, head - w, head + w);
       }
       build_.Use(stock_.car_glass);
     }
@@ -100,22 +109,27 @@ class VehicleMaker {
     build_.Box({cab, -half, 0.4F}, {f, half, top}, true);
     if (kind == 2) {
       build_.Use(random.Uniform() < 0.5 ? stock_.white : stock_.steel);
-      build_.Box({-f, -half - 0.05F, 0.8F}, {cab - 0.15F, half + 0.05F, Draw(random, 2.8, 3.4)}, true);
+      build_.Box({-f, -half - 0.05F, 0.8F}, {cab - 0.15F, half + 0.05F, Draw(random, 2.8, 3.4)},
+                 true);
       build_.Use(stock_.posters);
       for (const float s : {-1.0F, 1.0F}) {
-        const Vec2 cell(static_cast<float>(random.Index(kPosterCells)), static_cast<float>(random.Index(kPosterCells)));
-        const float y = s * (half + 0.06F), x0 = s < 0 ? -f + 1 : cab - 1.5F, x1 = s < 0 ? cab - 1.5F : -f + 1;
-        build_.Mapped({x0, y, 1.1F}, {x1, y, 1.1F}, {x1, y, 2.5F}, {x0, y, 2.5F}, cell / kPosterCells,
-                      (cell + Vec2::Ones()) / kPosterCells);
+        const Vec2 cell(static_cast<float>(random.Index(kPosterCells)),
+                        static_cast<float>(random.Index(kPosterCells)));
+        const float y = s * (half + 0.06F), x0 = s < 0 ? -f + 1 : cab - 1.5F,
+                    x1 = s < 0 ? cab - 1.5F : -f + 1;
+        build_.Mapped({x0, y, 1.1F}, {x1, y, 1.1F}, {x1, y, 2.5F}, {x0, y, 2.5F},
+                      cell / kPosterCells, (cell + Vec2::Ones()) / kPosterCells);
       }
       build_.Use(stock_.dark);
       build_.Box({-f, -half * 0.8F, 0.45F}, {cab, half * 0.8F, 0.8F}, true);
     }
     build_.Use(stock_.car_glass);
     const float low = top * 0.5F, high = top - 0.25F;
-    build_.Quad({f + 0.01F, -half + 0.1F, low}, {f + 0.01F, half - 0.1F, low}, {f + 0.01F, half - 0.12F, high}, {f + 0.01F, -half + 0.12F, high});
+    build_.Quad({f + 0.01F, -half + 0.1F, low}, {f + 0.01F, half - 0.1F, low},
+                {f + 0.01F, half - 0.12F, high}, {f + 0.01F, -half + 0.12F, high});
     if (kind != 2) {
-      build_.Quad({-f - 0.01F, half - 0.2F, low}, {-f - 0.01F, -half + 0.2F, low}, {-f - 0.01F, -half + 0.2F, high - 0.1F}, {-f - 0.01F, half - 0.2F, high - 0.1F});
+      build_.Quad({-f - 0.01F, half - 0.2F, low}, {-f - 0.01F, -half + 0.2F, low},
+                  {-f - 0.01F, -half + 0.2F, high - 0.1F}, {-f - 0.01F, half - 0.2F, high - 0.1F});
     }
     const float pane = kind == 0 ? 1.5F : 1.3F;
     for (float x = f - 0.3F; x - pane > cab + 0.2F; x -= pane + 0.12F) {
@@ -138,9 +152,10 @@ class VehicleMaker {
   // Someone on the way, in mid-stride.
   Model Person(Random& random, Palette& palette) {
     const auto cloth = [&](double low, double high) {
-      return palette.Add({.picture = Picture::kCloth,
-                          .tint = Color(Draw(random, low, high), Draw(random, low, high), Draw(random, low, high)),
-                          .tile = 0.8F});
+      return palette.Add(
+          {.picture = Picture::kCloth,
+           .tint = Color(Draw(random, low, high), Draw(random, low, high), Draw(random, low, high)),
+           .tile = 0.8F});
     };
     const int skin = palette.Add({.tint = Color(0.42F, 0.24F, 0.16F) * Draw(random, 0.35, 1.4)});
     const float stride = Draw(random, 0.1, 0.3), tall = Draw(random, 0.9, 1.06);
@@ -152,7 +167,8 @@ class VehicleMaker {
     build_.Use(shirt);
     build_.Ball({0, 0, 1.12F * tall}, {0.14F, 0.21F, 0.33F * tall}, 10);
     for (const float s : {-1.0F, 1.0F}) {
-      build_.Tube({0, s * 0.22F, 1.36F * tall}, {-s * stride * 0.8F, s * 0.27F, 0.95F * tall}, 0.055F, 0.045F, 6);
+      build_.Tube({0, s * 0.22F, 1.36F * tall}, {-s * stride * 0.8F, s * 0.27F, 0.95F * tall},
+                  0.055F, 0.045F, 6);
     }
     build_.Use(skin);
     build_.Ball({0.01F, 0, 1.58F * tall}, {0.1F, 0.09F, 0.13F}, 10);
@@ -209,9 +225,9 @@ Vehicles::Vehicles(std::uint64_t seed, const Stock& stock, World& world) {
 
 Color DrawCarPaint(Random& random) {
   static const std::array<Color, 10> kPaints = {
-      Color(0.75F, 0.75F, 0.74F), Color(0.75F, 0.75F, 0.74F), Color(0.40F, 0.41F, 0.43F),
+      Color(0.75F, 0.75F, 0.74F), Color(0.75F, 0.75F, 0.74F),  Color(0.40F, 0.41F, 0.43F),
       Color(0.38F, 0.38F, 0.38F), Color(0.02F, 0.02F, 0.022F), Color(0.10F, 0.10F, 0.11F),
-      Color(0.42F, 0.03F, 0.03F), Color(0.04F, 0.09F, 0.28F), Color(0.30F, 0.26F, 0.20F),
+      Color(0.42F, 0.03F, 0.03F), Color(0.04F, 0.09F, 0.28F),  Color(0.30F, 0.26F, 0.20F),
       Color(0.06F, 0.18F, 0.10F)};
   return kPaints[static_cast<std::size_t>(random.Index(10))] * Draw(random, 0.8, 1.15);
 }

@@ -12,8 +12,8 @@ struct Vehicles {
   Vehicles() = default;
   Vehicles(std::uint64_t seed, const Stock& stock, World& world);
 
-  std::vector<int> cars;    // 3.5 to 5 m long
-  std::vector<int> lorries; // buses, vans and lorries, 5.5 to 11 m
+  std::vector<int> cars;     // 3.5 to 5 m long
+  std::vector<int> lorries;  // buses, vans and lorries, 5.5 to 11 m
   std::vector<int> people;
   std::vector<float> lengths;  // by model number, metres; 0 for other models
 };
