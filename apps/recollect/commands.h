@@ -14,6 +14,7 @@ void AddLocalize(CLI::App& app);
 void AddMap(CLI::App& app);
 void AddBench(CLI::App& app);
 void AddPlaces(CLI::App& app);
+void AddSimulate(CLI::App& app);
 void AddTrain(CLI::App& app);
 
 }  // namespace recollect::app

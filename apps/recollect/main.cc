@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   AddMap(app);
   AddBench(app);
   AddPlaces(app);
+  AddSimulate(app);
   AddTrain(app);
   try {
     app.parse(argc, argv);

@@ -93,7 +93,10 @@ std::vector<Lap> ReadLaps(const fs::path& folder, Format format) {
 
   std::vector<fs::path> inner;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_directory() && wanted(FormatOf(entry.path()))) inner.push_back(entry.path());
+    const bool hidden = entry.path().filename().string().front() == '.';  // a lap being written
+    if (entry.is_directory() && !hidden && wanted(FormatOf(entry.path()))) {
+      inner.push_back(entry.path());
+    }
   }
   std::sort(inner.begin(), inner.end());
   std::vector<Lap> laps;

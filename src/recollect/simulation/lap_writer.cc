@@ -105,7 +105,7 @@ std::string KittiCalibration(const StereoCamera& camera) {
 }
 
 std::string GpsTable(const std::vector<GpsFix>& fixes) {
-  std::string text;
+  std::string text = "time,x,y,z,quality\n";
   for (const GpsFix& fix : fixes) {
     text += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f},{}\n", fix.time, fix.p_world.x(),
                         fix.p_world.y(), fix.p_world.z(), fix.quality);

@@ -14,8 +14,7 @@ namespace {
 // A lap of the ring with everything a test may want to vary.
 struct Setting {
   explicit Setting(int lap = 1, const Change& change = {}, Weather weather = Weather::kFair)
-      : pool(2),
-        pictures(pool),
+      : pictures(Pictures()),
         route(RingRoute(1)),
         campus(route, 1),
         drive(route.DriveOf(lap, 1)),
@@ -30,8 +29,13 @@ struct Setting {
     return options;
   }
 
-  ThreadPool pool;
-  PictureSet pictures;
+  static const PictureSet& Pictures() {
+    static ThreadPool pool(2);
+    static const PictureSet pictures(pool);
+    return pictures;
+  }
+
+  const PictureSet& pictures;
   Route route;
   Campus campus;
   Drive drive;
@@ -177,8 +181,7 @@ TEST(Render, NothingStandsWhereTheCarDrives) {
   for (const int lap : {1, 2, 5}) {
     const Route route = RingRoute(1);
     const Campus campus(route, 1);
-    ThreadPool pool(1);
-    const PictureSet pictures(pool);
+    const PictureSet& pictures = Setting::Pictures();
     const Drive drive = route.DriveOf(lap, 1);
     const CampusDay day = BuildCampus(campus, MakeDay(drive.times.front(), {}, Weather::kClear, 1));
     const Scene scene(day.world, pictures);

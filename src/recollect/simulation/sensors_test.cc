@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <opencv2/core.hpp>
 
 #include "recollect/core/error.h"
 #include "recollect/core/random.h"

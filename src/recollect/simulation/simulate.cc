@@ -183,7 +183,7 @@ class LapJob {
     std::vector<SE3> poses;
     std::vector<double> times;
     std::vector<Eigen::Vector3d> positions;
-    std::string time_text, gga, wheels, faults;
+    std::string time_text, gga, wheels = "time,speed,steering\n", faults = "frame,fault\n";
     const double start = drive_.times.front();
     for (std::size_t k = 0; k < frames_.size(); ++k) {
       poses.push_back(renderer.WorldFromCamera(frames_[k]));

@@ -26,7 +26,8 @@ SimulateOptions Short(const fs::path& out) {
   SimulateOptions options;
   options.out = out;
   options.laps = "2";
-  options.spacing = 100;
+  options.spacing = 10;
+  options.every = 12;
   options.depth = true;
   options.threads = 2;
   return options;
@@ -49,6 +50,8 @@ TEST(Simulate, MakesLapsThatTheReaderTakes) {
   const SimulateResult again = Simulate(options);
   EXPECT_EQ(again.rendered, 0);
   EXPECT_EQ(again.kept, result.rendered);
+  fs::create_directories(options.out / ".lap-03.partial" / "image_2");  // another run at work
+  EXPECT_EQ(ReadLaps(options.out).size(), 1U);
 }
 
 TEST(Simulate, GoesOnWhereItStopped) {
