@@ -9,7 +9,8 @@
 namespace recollect::simulation {
 namespace {
 
-constexpr int kBlock = 4;  // pixels that share a motion vector, either way
+constexpr int kBlock = 4;      // pixels that share a motion vector, either way
+constexpr int kMostTaps = 12;  // along that vector
 constexpr float kFarthest = 200;
 
 // Samples of a normal distribution, drawn once: a random index gives a random number.
@@ -38,15 +39,20 @@ std::vector<Color> Blur(const Rendering& r, const PinholeCamera& camera,
       const Eigen::Vector3d q = end_from_start * p;
       if (q.z() < 0.1) continue;
       const Eigen::Vector2f move = (camera.Project(q) - Eigen::Vector2d(cx, cy)).cast<float>();
-      const int taps = std::min(12, static_cast<int>(move.norm() + 0.5F) + 1);
+      const int taps = std::min(kMostTaps, static_cast<int>(move.norm() + 0.5F) + 1);
       if (taps < 2) continue;
+      std::array<std::array<int, 2>, kMostTaps> path;
+      for (int k = 0; k < taps; ++k) {
+        const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(taps) - 0.5F;
+        path[static_cast<std::size_t>(k)] = {static_cast<int>(std::lround(t * move.x())),
+                                             static_cast<int>(std::lround(t * move.y()))};
+      }
       for (int y = by; y < std::min(by + kBlock, r.height); ++y) {
         for (int x = bx; x < std::min(bx + kBlock, r.width); ++x) {
           Color sum = Color::Zero();
           for (int k = 0; k < taps; ++k) {
-            const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(taps) - 0.5F;
-            const int sx = static_cast<int>(std::lround(static_cast<float>(x) + t * move.x()));
-            const int sy = static_cast<int>(std::lround(static_cast<float>(y) + t * move.y()));
+            const int sx = x + path[static_cast<std::size_t>(k)][0];
+            const int sy = y + path[static_cast<std::size_t>(k)][1];
             sum += r.At(std::clamp(sx, 0, r.width - 1), std::clamp(sy, 0, r.height - 1));
           }
           out[r.Index(x, y)] = sum / static_cast<float>(taps);
@@ -82,10 +88,13 @@ cv::Mat Develop(const Rendering& r, const PinholeCamera& camera, const SE3& star
                                       static_cast<double>(film.brightness) / std::max(mean, 1e-6)));
   constexpr int kTones = 4096;
   std::array<std::uint8_t, kTones + 1> tone{};
+  std::array<float, kTones + 1> noise{};  // its standard deviation
   for (int i = 0; i <= kTones; ++i) {
     const float v = static_cast<float>(i) / kTones;
     tone[static_cast<std::size_t>(i)] =
         static_cast<std::uint8_t>(std::lround(255 * std::pow(v, 1 / film.gamma)));
+    noise[static_cast<std::size_t>(i)] =
+        std::sqrt(film.read_noise * film.read_noise + film.shot_noise * film.shot_noise * v);
   }
   const auto& bells = Bells();
   const Color scale = film.white_balance * gain;
@@ -96,14 +105,15 @@ cv::Mat Develop(const Rendering& r, const PinholeCamera& camera, const SE3& star
       const float dx = (static_cast<float>(x) - static_cast<float>(r.width) / 2) / half;
       const float dy = (static_cast<float>(y) - static_cast<float>(r.height) / 2) / half;
       const Color c = light[r.Index(x, y)] * scale * (1 - film.vignette * (dx * dx + dy * dy));
+      cv::Vec3b& pixel = image(y, x);
       const std::uint64_t grain = SubSeed(seed, r.Index(x, y));
       for (int k = 0; k < 3; ++k) {
         // Highlights bend over softly towards white; then photons and electronics add their noise.
-        float v = c[k] * 1.2F / (1 + 0.35F * c[k]);
-        v += bells[(grain >> (16 * k)) % bells.size()] *
-             std::sqrt(film.read_noise * film.read_noise + film.shot_noise * film.shot_noise * v);
-        const int level = static_cast<int>(std::clamp(v, 0.0F, 1.0F) * kTones);
-        image(y, x)[2 - k] = tone[static_cast<std::size_t>(level)];
+        const float v = std::min(1.0F, c[k] * 1.2F / (1 + 0.35F * c[k]));
+        const float noisy = v + bells[(grain >> (16 * k)) % bells.size()] *
+                                    noise[static_cast<std::size_t>(v * kTones)];
+        const int level = static_cast<int>(std::clamp(noisy, 0.0F, 1.0F) * kTones);
+        pixel[2 - k] = tone[static_cast<std::size_t>(level)];
       }
     }
   }
@@ -115,9 +125,8 @@ cv::Mat DepthImage(const Rendering& r, int step) {
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const float depth = r.Depth(x * step, y * step);
-      image(y, x) = depth > 0 && depth < kFarthest
-                        ? static_cast<std::uint16_t>(std::lround(depth * 100))
-                        : std::uint16_t{0};
+      image(y, x) = depth > 0 && depth < kFarthest ? static_cast<std::uint16_t>(depth * 100 + 0.5F)
+                                                   : std::uint16_t{0};
     }
   }
   return image;

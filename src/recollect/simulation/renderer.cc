@@ -23,6 +23,8 @@ struct Sample {
   std::uint32_t id;
 };
 
+constexpr std::uint32_t kSunlit = 0x40000000;
+
 class Frame {
  public:
   Frame(const Scene& scene, const PictureSet& pictures, const Sky& sky, float wetness,
@@ -131,7 +133,7 @@ class Frame {
       const float t = rays.ray.tfar[k];
       const float sunlit = lit[i] != 0 && shadows.tfar[k] > 0 ? 1.0F : 0.0F;
       samples[k] = {Lit(sky_, shaded[i], directions[i], t, sunlit), t / lengths[i],
-                    shaded[i].id + 1 + (sunlit > 0 ? 0x40000000U : 0U)};
+                    shaded[i].id + 1 + (sunlit > 0 && !shaded[i].foliage ? kSunlit : 0U)};
     }
   }
 

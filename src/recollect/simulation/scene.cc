@@ -12,35 +12,48 @@ namespace {
 struct Context {
   RTCIntersectContext rtc;  // first: Embree hands this to the filter
   float spread = 0;
+
+  explicit Context(float width, RTCIntersectContextFlags flags) : spread(width) {
+    rtcInitIntersectContext(&rtc);
+    rtc.flags = flags;
+  }
 };
 
-// Geometry numbers of a scene's own meshes; instances come after them.
-constexpr unsigned kSolid = 0, kCutout = 1, kFirstInstance = 2;
+// Neighbouring pixels' rays go the same way through what stands. Instances of what moves are not
+// traced so: Embree 3.13 does not always come back from it.
+constexpr auto kTogether = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+constexpr auto kApart = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+
+// Geometry numbers in every scene.
+constexpr unsigned kSolid = 0, kCutout = 1;
 constexpr int kShadowLevel = 2;  // mip level at which shadow rays see leaves
 
 }  // namespace
 
 struct Scene::Cutout {
-  const Mesh* mesh;
-  const Palette* palette;
-  const PictureSet* pictures;
+  const Texture* texture;
+  float texels;  // along one metre
+};
+
+// Quads of a scene's own or of a model, with what it takes to know them again.
+struct Scene::Layer {
+  std::vector<Source> sources;  // of each quad
+  std::vector<Cutout> cutouts;  // of each quad, where they are cut out
 
   // Turns down hits that fall into the holes of a cut-out texture.
   static void Filter(const RTCFilterFunctionNArguments* args) {
-    const auto& self = *static_cast<const Cutout*>(args->geometryUserPtr);
+    const auto& cutouts = static_cast<const Layer*>(args->geometryUserPtr)->cutouts;
     const float spread = reinterpret_cast<const Context*>(args->context)->spread;
     for (unsigned i = 0; i < args->N; ++i) {
       if (args->valid[i] != -1) continue;
-      const Surface& surface = self.mesh->surfaces[RTCHitN_primID(args->hit, args->N, i)];
-      const Texture& texture = (*self.pictures)[(*self.palette)[surface.material].picture];
+      const Cutout& cutout = cutouts[RTCHitN_primID(args->hit, args->N, i)];
       int level = kShadowLevel;
       if (spread > 0) {
-        const float width = RTCRayN_tfar(args->ray, args->N, i) * spread * surface.gu.norm() *
-                            static_cast<float>(texture.size());
+        const float width = RTCRayN_tfar(args->ray, args->N, i) * spread * cutout.texels;
         level = width > 1 ? static_cast<int>(std::bit_cast<std::uint32_t>(width) >> 23) - 127 : 0;
       }
-      if (!texture.Solid(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i),
-                         level)) {
+      if (!cutout.texture->Solid(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i),
+                                 level)) {
         args->valid[i] = 0;
       }
     }
@@ -52,17 +65,14 @@ Scene::Scene(const World& world, const PictureSet& pictures) : world_(world), pi
   device_ = rtcNewDevice("threads=1,set_affinity=0");
   Require(device_ != nullptr, "Embree", "the ray tracer does not start");
   for (const Model& model : world.models) {
-    models_.push_back(Commit(model.solid, model.cutout));
-    rtcCommitScene(models_.back());
+    models_.push_back(Commit(model.solid, model.cutout, {}));
   }
-  scene_ = Commit(world.solid, world.cutout);
-  for (const Instance& instance : world.instances) {
-    instances_.emplace_back(instance);
-    const RTCGeometry geometry = Place(instances_.back());
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-  }
-  rtcCommitScene(scene_);
+  for (const Instance& instance : world.instances) instances_.emplace_back(instance);
+  // All that stands is one tree of quads: rays would visit the boxes of instances, which overlap
+  // where crowns do, one after the other.
+  scene_ = Commit(world.solid, world.cutout, instances_);
+  cutout_ = layers_.back().get();
+  solid_ = layers_[layers_.size() - 2].get();
   Require(rtcGetDeviceError(device_) == RTC_ERROR_NONE, "Embree", "building the scene failed");
 }
 
@@ -72,32 +82,63 @@ Scene::~Scene() {
   if (device_ != nullptr) rtcReleaseDevice(device_);
 }
 
-// A scene of two meshes, not yet committed. Empty meshes keep their number.
-RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout) {
+// A scene of two meshes and of copies of models. Empty meshes keep their number.
+RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout,
+                       const std::vector<PlacedInstance>& instances) {
   const RTCScene scene = rtcNewScene(device_);
+  if (!instances.empty()) rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   for (const unsigned id : {kSolid, kCutout}) {
-    const Mesh& mesh = id == kSolid ? solid : cutout;
+    std::vector<std::pair<const Mesh*, int>> parts = {{id == kSolid ? &solid : &cutout, -1}};
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      const Model& model = world_.models.at(static_cast<std::size_t>(instances[i].instance.model));
+      parts.emplace_back(id == kSolid ? &model.solid : &model.cutout, static_cast<int>(i));
+    }
+    std::size_t vertices = 0, quads = 0;
+    for (const auto& [mesh, instance] : parts) {
+      vertices += mesh->vertices.size();
+      quads += mesh->quads.size();
+    }
+    layers_.push_back(std::make_unique<Layer>());
+    Layer& layer = *layers_.back();
+    layer.sources.reserve(quads);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
-    if (!mesh.quads.empty()) {
-      // Embree reads vertices sixteen bytes at a time, so the last one needs room behind it.
-      auto* vertices = static_cast<Vec3*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                  sizeof(Vec3), mesh.vertices.size()));
-      std::copy(mesh.vertices.begin(), mesh.vertices.end(), vertices);
-      auto* quads = static_cast<std::array<std::uint32_t, 4>*>(rtcSetNewGeometryBuffer(
-          geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, mesh.quads.size()));
-      std::copy(mesh.quads.begin(), mesh.quads.end(), quads);
+    if (quads > 0) {
+      // Embree pads the buffer: it reads vertices sixteen bytes at a time.
+      auto* vertex = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), vertices));
+      auto* quad = static_cast<std::array<std::uint32_t, 4>*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, quads));
+      std::uint32_t base = 0;
+      for (const auto& [mesh, i] : parts) {
+        const Eigen::Affine3f place =
+            i < 0
+                ? Eigen::Affine3f::Identity()
+                : Eigen::Affine3f(instances[static_cast<std::size_t>(i)].instance.world_from_model);
+        const float scale = place.linear().col(0).norm();
+        for (const Vec3& v : mesh->vertices) *vertex++ = i < 0 ? v : Vec3(place * v);
+        for (std::uint32_t q = 0; q < mesh->quads.size(); ++q) {
+          for (std::size_t k = 0; k < 4; ++k) (*quad)[k] = base + mesh->quads[q][k];
+          ++quad;
+          layer.sources.push_back({i, q});
+          if (id != kCutout) continue;
+          const Surface& surface = mesh->surfaces[q];
+          const Texture& texture = pictures_[world_.palette[surface.material].picture];
+          layer.cutouts.push_back(
+              {&texture, surface.gu.norm() / scale * static_cast<float>(texture.size())});
+        }
+        base += static_cast<std::uint32_t>(mesh->vertices.size());
+      }
     }
     if (id == kCutout) {
-      cutouts_.push_back(std::make_unique<Cutout>(&mesh, &world_.palette, &pictures_));
-      rtcSetGeometryUserData(geometry, cutouts_.back().get());
-      rtcSetGeometryIntersectFilterFunction(geometry, &Cutout::Filter);
-      rtcSetGeometryOccludedFilterFunction(geometry, &Cutout::Filter);
+      rtcSetGeometryUserData(geometry, &layer);
+      rtcSetGeometryIntersectFilterFunction(geometry, &Layer::Filter);
+      rtcSetGeometryOccludedFilterFunction(geometry, &Layer::Filter);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);
   }
+  rtcCommitScene(scene);
   return scene;
 }
 
@@ -113,17 +154,15 @@ RTCGeometry Scene::Place(const PlacedInstance& placed) const {
 
 void Scene::Intersect(RTCRayHit16& rays, const int* valid, float spread, const Movers* movers,
                       Hit* hits) const {
-  Context context;
-  rtcInitIntersectContext(&context.rtc);
-  context.spread = spread;
+  Context context(spread, kTogether);
   std::fill_n(rays.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(rays.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
   rtcIntersect16(valid, scene_, &context.rtc, &rays);
   std::array<float, kPacket> still;
   std::copy_n(rays.ray.tfar, kPacket, still.begin());
   if (movers != nullptr && !movers->instances_.empty()) {
-    rtcInitIntersectContext(&context.rtc);
-    rtcIntersect16(valid, movers->scene_, &context.rtc, &rays);
+    Context apart(spread, kApart);
+    rtcIntersect16(valid, movers->scene_, &apart.rtc, &rays);
   }
   for (int i = 0; i < kPacket; ++i) {
     hits[i] = {};
@@ -134,11 +173,16 @@ void Scene::Intersect(RTCRayHit16& rays, const int* valid, float spread, const M
     hit.u = rays.hit.u[i];
     hit.v = rays.hit.v[i];
     const bool solid = rays.hit.geomID[i] == kSolid;
-    const unsigned instance = rays.hit.instID[0][i];
-    if (instance == RTC_INVALID_GEOMETRY_ID) {
+    if (hit.moving) {
+      hit.instance = static_cast<int>(rays.hit.instID[0][i]);
+    } else {
+      const Source& source = (solid ? solid_ : cutout_)->sources[hit.quad];
+      hit.instance = source.instance;
+      hit.quad = source.quad;
+    }
+    if (hit.instance < 0) {
       hit.mesh = solid ? &world_.solid : &world_.cutout;
     } else {
-      hit.instance = static_cast<int>(instance - (hit.moving ? 0 : kFirstInstance));
       const auto& all = hit.moving ? movers->instances_ : instances_;
       const auto model = all[static_cast<std::size_t>(hit.instance)].instance.model;
       const Model& m = world_.models[static_cast<std::size_t>(model)];
@@ -148,16 +192,15 @@ void Scene::Intersect(RTCRayHit16& rays, const int* valid, float spread, const M
 }
 
 void Scene::Occluded(RTCRay16& rays, const int* valid, const Movers* movers) const {
-  Context context;
-  rtcInitIntersectContext(&context.rtc);
+  Context context(0, kTogether);
   rtcOccluded16(valid, scene_, &context.rtc, &rays);
   if (movers == nullptr || movers->instances_.empty()) return;
   std::array<int, kPacket> open;
   for (int i = 0; i < kPacket; ++i) {
     open[static_cast<std::size_t>(i)] = valid[i] != 0 && rays.tfar[i] >= 0 ? -1 : 0;
   }
-  rtcInitIntersectContext(&context.rtc);
-  rtcOccluded16(open.data(), movers->scene_, &context.rtc, &rays);
+  Context apart(0, kApart);
+  rtcOccluded16(open.data(), movers->scene_, &apart.rtc, &rays);
 }
 
 Movers::Movers(const Scene& scene, const std::vector<Instance>& instances) {

@@ -53,8 +53,14 @@ class Scene {
  private:
   friend class Movers;
   struct Cutout;
+  struct Layer;
+  struct Source {
+    int instance;  // -1: the world's own mesh
+    std::uint32_t quad;
+  };
 
-  RTCScene Commit(const Mesh& solid, const Mesh& cutout);
+  RTCScene Commit(const Mesh& solid, const Mesh& cutout,
+                  const std::vector<PlacedInstance>& instances);
   RTCGeometry Place(const PlacedInstance& placed) const;
 
   const World& world_;
@@ -62,7 +68,8 @@ class Scene {
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   std::vector<RTCScene> models_;
-  std::vector<std::unique_ptr<Cutout>> cutouts_;
+  std::vector<std::unique_ptr<Layer>> layers_;
+  const Layer *solid_ = nullptr, *cutout_ = nullptr;  // of what stands
   std::vector<PlacedInstance> instances_;
 };
 

@@ -19,8 +19,8 @@ Vec3 SmoothNormal(const Mesh& mesh, const Hit& hit) {
 float Patches(const PictureSet& pictures, const Vec3& p, float strength, float footprint) {
   const Texture& noise = pictures.variation();
   const float x = p.x() + 0.6F * p.z(), y = p.y() - 0.8F * p.z();
-  const float broad = noise.Sample(x / 61, y / 61, footprint / 61, 0, 0).x();
-  const float fine = noise.Sample(x / 11.3F, y / 11.3F, footprint / 11.3F, 0, 0).y();
+  const float broad = noise.Smooth(x / 61, y / 61, footprint / 61).x();
+  const float fine = noise.Smooth(x / 11.3F, y / 11.3F, footprint / 11.3F).y();
   return 1 + strength * (0.7F * broad + 0.6F * fine - 0.65F);
 }
 
@@ -53,7 +53,8 @@ Shaded Surfaced(const Scene& scene, const PictureSet& pictures, float wetness, c
   const Vec3 across = local_d.cross(surface.normal).normalized() * (width * scale);
   Vec3 along = local_d - surface.normal * surface.normal.dot(local_d);
   along *= width / std::max(slant, 1e-3F) / std::max(along.norm() / scale, 1e-6F);
-  const float minor = std::hypot(surface.gu.dot(across), surface.gv.dot(across));
+  const Vec2 span(surface.gu.dot(across), surface.gv.dot(across));
+  const float minor = span.norm();
   const float u = surface.gu.dot(local) + surface.u0, v = surface.gv.dot(local) + surface.v0;
   out.albedo = material.tint * pictures[material.picture].Sample(u, v, minor, surface.gu.dot(along),
                                                                  surface.gv.dot(along));
@@ -66,8 +67,7 @@ Shaded Surfaced(const Scene& scene, const PictureSet& pictures, float wetness, c
   out.gloss = material.gloss;
   if (wetness > 0 && material.ground) {
     const float puddle = SmoothStep(
-        0.45F, 0.6F,
-        pictures.variation().Sample(point.x() / 19, point.y() / 19, width / 19, 0, 0).x());
+        0.45F, 0.6F, pictures.variation().Smooth(point.x() / 19, point.y() / 19, width / 19).x());
     out.albedo *= 1 - wetness * 0.45F;
     out.gloss = std::max(out.gloss, wetness * (0.25F + 0.75F * puddle));
   }
@@ -96,7 +96,7 @@ Color Lit(const Sky& sky, const Shaded& s, const Vec3& d, float distance, float 
   Color color = s.albedo * light;
   if (s.gloss > 0) {
     const float facing = std::min(1.0F, std::abs(s.normal.dot(d)));
-    const float grazing = std::pow(1 - facing, 5.0F);
+    const float away = 1 - facing, grazing = away * away * away * away * away;
     const float share = s.gloss * (0.05F + 0.9F * grazing);
     const Vec3 mirrored = d - 2 * s.normal.dot(d) * s.normal;
     color = color * (1 - share) + sky.Reflection(mirrored) * share;

@@ -51,16 +51,18 @@ Sky::Sky(const Day& day, const PictureSet& pictures)
 
 Color Sky::Radiance(const Vec3& d) const {
   const float z = std::max(d.z(), 0.0F);
-  const float rise = 1 - std::pow(1 - z, 4.0F);
+  const float low = (1 - z) * (1 - z);
+  const float rise = 1 - low * low;
   Color color = Mix(horizon_, zenith_, rise);
   const float toward = std::max(0.0F, d.dot(to_sun_));
-  const float toward4 = toward * toward * toward * toward;
-  color += sun_ * (0.04F * toward4 + 0.12F * std::pow(toward, 48.0F));
+  const float toward2 = toward * toward, toward4 = toward2 * toward2;
+  const float toward16 = toward4 * toward4 * toward4 * toward4;
+  color += sun_ * (0.04F * toward4 + 0.12F * toward16 * toward16 * toward16);
   if (cover_ > 0.02F && z > 0.01F) {
     const float reach = 0.11F / (z + 0.12F);
     const float u = d.x() * reach + drift_u_, v = d.y() * reach + drift_v_;
-    const Color big = noise_->Sample(u, v, 0.003F, 0, 0);
-    const Color small = noise_->Sample(u * 4.3F, v * 4.3F, 0.004F, 0, 0);
+    const Color big = noise_->Smooth(u, v, 0.003F);
+    const Color small = noise_->Smooth(u * 4.3F, v * 4.3F, 0.004F);
     const float density = 0.68F * big.x() + 0.32F * small.y();
     const float edge = 1 - cover_;
     const float alpha =

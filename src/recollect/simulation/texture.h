@@ -27,19 +27,21 @@ class Texture {
   int size() const { return size_; }
 
   // Colour averaged over a parallelogram-like footprint about (u, v): `minor` tiles wide across
-  // and (du, dv) tiles long along its major axis. Trilinear, with up to four taps along the axis.
+  // and (du, dv) tiles long along its major axis. Mixes mip levels, with up to four taps along the
+  // axis.
   Color Sample(float u, float v, float minor, float du, float dv) const;
+
+  // Colour averaged over about `width` tiles, from one mip level: for slow noise.
+  Color Smooth(float u, float v, float width) const;
 
   // Whether a cut-out texture is solid at (u, v), read at the given mip level (clamped).
   bool Solid(float u, float v, int level) const;
 
  private:
-  Color Trilinear(float u, float v, float lod) const;
-
   int size_ = 0, levels_ = 0;
-  std::vector<std::size_t> offsets_;  // first texel of each level
-  std::vector<std::uint8_t> rgba_;    // square roots of the colours, and alpha
-  std::vector<std::uint8_t> solid_;   // alpha alone, scaled to keep coverage in all levels
+  std::vector<std::size_t> offsets_, solid_offsets_;  // where each level begins
+  std::vector<std::uint8_t> rgba_;   // square roots of the colours, and alpha; padded to wrap
+  std::vector<std::uint8_t> solid_;  // alpha alone, scaled to keep coverage in all levels
 };
 
 }  // namespace recollect::simulation
