@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
-#include "recollect/wnn/kernel_common.h"
 
 namespace recollect::wnn {
 namespace {
@@ -108,15 +106,7 @@ void Asking::SetHints(std::span<const int> entries) {
 }
 
 std::int64_t Asking::TryHints(int begin, int end) {
-  for (const Hint& hint : hints_) {
-    for (int n = begin; n < end; ++n) {
-      const std::ptrdiff_t at = std::ptrdiff_t{n} * hint.stride;
-      const std::uint64_t* q = query_.pattern + std::ptrdiff_t{n} * kWords;
-      const int distance = std::popcount(hint.low[at] ^ q[0]) + std::popcount(hint.high[at] ^ q[1]);
-      Answer& best = query_.answers[n];
-      best = Better(best, query_.ties, n, distance, hint.entry);
-    }
-  }
+  for (const ScanEntry& hint : hints_) kernel_.probe(hint, query_, begin, end);
   return static_cast<std::int64_t>(hints_.size()) * (end - begin) * kWords;
 }
 

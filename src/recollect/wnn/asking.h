@@ -50,12 +50,6 @@ class Asking {
   std::int64_t words_read() const { return words_read_; }
 
  private:
-  struct Hint {
-    const std::uint64_t* low;
-    const std::uint64_t* high;
-    int stride;  // words from a neuron to the next
-    int entry;
-  };
   std::int64_t TryHints(int begin, int end);  // returns the number of words read
 
   const Memory& memory_;
@@ -65,7 +59,7 @@ class Asking {
   std::vector<ScanBlock> blocks_;
   std::vector<Answer> answers_;
   ScanQuery query_;
-  std::vector<Hint> hints_;
+  std::vector<ScanEntry> hints_;
   std::atomic<std::int64_t> words_read_ = 0;
 };
 

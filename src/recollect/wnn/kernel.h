@@ -17,6 +17,14 @@ struct ScanBlock {
   std::uint64_t allowed = 0;            // bit i: frame i may be looked at
 };
 
+// One entry, wherever it lies.
+struct ScanEntry {
+  const std::uint64_t* low = nullptr;   // its word of neuron 0's synapses 0..63
+  const std::uint64_t* high = nullptr;  // and of synapses 64..127
+  int stride = 0;                       // words from a neuron to the next
+  int entry = 0;                        // its number
+};
+
 // What a scan looks for, and the nearest it has found so far, by neuron.
 struct ScanQuery {
   const std::uint64_t* pattern = nullptr;  // neurons x kWords
@@ -31,6 +39,8 @@ struct Kernel {
   // offsets: where in `values` each synapse looks, neurons x kSynapses. pattern: neurons x kWords.
   void (*cells)(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                 std::uint64_t* pattern);
+  // Improves the answers of neurons [begin, end) by one entry.
+  void (*probe)(const ScanEntry& entry, const ScanQuery& query, int begin, int end);
   // Improves the answers of neurons [begin, end) by the block's allowed frames. Reads the second
   // half of a pattern only where the first half does not rule it out; returns the number of 64-bit
   // words read.

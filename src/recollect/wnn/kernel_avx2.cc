@@ -108,7 +108,11 @@ AVX2 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count,
   }
 }
 
-constexpr Kernel kKernel = {"avx2", Cells, Scan, ScanBatch};
+AVX2 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
+  ProbeEntry(entry, query, begin, end);
+}
+
+constexpr Kernel kKernel = {"avx2", Cells, Probe, Scan, ScanBatch};
 
 }  // namespace
 

@@ -84,6 +84,22 @@ AVX512 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int beg
   return lines * kLane;
 }
 
+// The same for a row of a full block; no branch but on the number of hits.
+AVX512 Answer TakeBatchHits(std::uint64_t hits, const ScanBlock& block, const ScanQuery& query,
+                            int n) {
+  const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+  const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+  const std::uint64_t* q = query.pattern + std::ptrdiff_t{n} * kWords;
+  Answer best = query.answers[n];
+  for (; hits != 0; hits &= hits - 1) {
+    const int i = std::countr_zero(hits);
+    const int distance = std::popcount(low[i] ^ q[0]) + std::popcount(high[i] ^ q[1]);
+    if (distance > AnswerDistance(best)) continue;
+    best = Better(best, query.ties, n, distance, block.first_entry + i);
+  }
+  return best;
+}
+
 // One row of a full block stays in registers while all queries pass over it.
 AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
                       int end) {
@@ -113,16 +129,27 @@ AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int coun
       // bits does, and costs half of that of 64.
       __m512i least = _mm512_set1_epi64(2 * kSynapses);
       for (int lane = 0; lane < kLanes; ++lane) {
-        least = _mm512_min_epu64(
+        least = _mm512_min_epu32(
             least, _mm512_add_epi64(Different(rows0[lane], q0), Different(rows1[lane], q1)));
       }
       const __m512i limit = Limit(query.answers[n]);
-      if (_mm512_cmple_epu64_mask(least, limit) != 0) Scan(block, query, n, n + 1);
+      if (_mm512_cmple_epu64_mask(least, limit) == 0) continue;
+      std::uint64_t hits = 0;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const __m512i distances =
+            _mm512_add_epi64(Different(rows0[lane], q0), Different(rows1[lane], q1));
+        hits |= std::uint64_t{_mm512_cmple_epu64_mask(distances, limit)} << (kLane * lane);
+      }
+      query.answers[n] = TakeBatchHits(hits, block, query, n);
     }
   }
 }
 
-constexpr Kernel kKernel = {"avx512", Cells, Scan, ScanBatch};
+AVX512 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
+  ProbeEntry(entry, query, begin, end);
+}
+
+constexpr Kernel kKernel = {"avx512", Cells, Probe, Scan, ScanBatch};
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+
 #include "recollect/wnn/kernel.h"
 #include "recollect/wnn/network.h"
 
@@ -10,6 +12,20 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
   const Answer offer =
       MakeAnswer(distance, TieBreak::Priority(ties.NeuronSalt(neuron), entry), entry);
   return offer < best ? offer : best;
+}
+
+// Kernel::probe, compiled once for each instruction set: few have a bit count in their baseline.
+[[gnu::always_inline]] inline void ProbeEntry(const ScanEntry& entry, const ScanQuery& query,
+                                              int begin, int end) {
+  for (int n = begin; n < end; ++n) {
+    const std::ptrdiff_t at = std::ptrdiff_t{n} * entry.stride;
+    const std::uint64_t* q = query.pattern + std::ptrdiff_t{n} * kWords;
+    const int distance = std::popcount(entry.low[at] ^ q[0]) + std::popcount(entry.high[at] ^ q[1]);
+    Answer& best = query.answers[n];
+    if (distance <= AnswerDistance(best)) {
+      best = Better(best, query.ties, n, distance, entry.entry);
+    }
+  }
 }
 
 // Kernel::cells in plain C++.

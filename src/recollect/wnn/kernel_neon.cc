@@ -64,7 +64,11 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
   }
 }
 
-constexpr Kernel kKernel = {"neon", PlainCells, Scan, ScanBatch};
+void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
+  ProbeEntry(entry, query, begin, end);
+}
+
+constexpr Kernel kKernel = {"neon", PlainCells, Probe, Scan, ScanBatch};
 
 }  // namespace
 

@@ -50,8 +50,12 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
   }
 }
 
+void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
+  ProbeEntry(entry, query, begin, end);
+}
+
 }  // namespace
 
-const Kernel kPlainKernel = {"plain", PlainCells, Scan, ScanBatch};
+const Kernel kPlainKernel = {"plain", PlainCells, Probe, Scan, ScanBatch};
 
 }  // namespace recollect::wnn
