@@ -13,6 +13,8 @@
 namespace recollect::wnn {
 namespace {
 
+constexpr int kStrip = 91;  // rows
+
 // The blurring kernel of a window `width` pixels wide.
 double BlurScale(int width) { return width / 640.0; }
 int BlurSize(const NetworkOptions& options, int width) {
@@ -39,7 +41,7 @@ struct Encoder::State {
   ThreadPool& pool;
   std::vector<std::int32_t> offsets;  // neurons x kSynapses, into values
   std::vector<std::int32_t> values;   // the sharp window, then the blurred one
-  cv::Mat window, blurred;
+  cv::Mat kept, window, blurred;
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
       : options(o), synapses(o, width, height), image_height(height), pool(p) {
@@ -83,16 +85,34 @@ struct Encoder::State {
     if (image.channels == 3 && options.code == Code::kGray) {
       cv::cvtColor(seen, window, cv::COLOR_BGR2GRAY);
     } else {
-      window = seen;
+      // A header of its own: the blur shall not look past the window into the image.
+      kept = seen;
+      window = cv::Mat(height, width, kept.type(), kept.data, kept.step);
     }
   }
 
-  void CodeRows(const cv::Mat& from, std::int32_t* to) {
-    pool.For(from.rows, 64, [&](std::int64_t begin, std::int64_t end) {
-      for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-        CodeRow(from.ptr(y), from.cols, from.channels() == 3, to + std::ptrdiff_t{y} * from.cols);
-      }
+  // Codes the window, and its blurred copy behind it, in strips: they are cut the same way whatever
+  // the number of threads.
+  void CodeWindow() {
+    const int width = window.cols, size = BlurSize(options, width);
+    const double sigma = options.blur_sigma * BlurScale(width);
+    std::int32_t* const coded_blurred = values.data() + values.size() / 2;
+    if (options.blur) blurred.create(window.size(), window.type());
+    pool.For(window.rows, kStrip, [&](std::int64_t begin, std::int64_t end) {
+      const cv::Range strip(static_cast<int>(begin), static_cast<int>(end));
+      CodeRows(window, strip, values.data());
+      if (!options.blur) return;
+      cv::Mat to = blurred.rowRange(strip);
+      cv::GaussianBlur(window.rowRange(strip), to, cv::Size(size, size), sigma, 0,
+                       cv::BORDER_REFLECT_101);
+      CodeRows(blurred, strip, coded_blurred);
     });
+  }
+
+  void CodeRows(const cv::Mat& from, cv::Range rows, std::int32_t* to) const {
+    for (int y = rows.start; y < rows.end; ++y) {
+      CodeRow(from.ptr(y), from.cols, from.channels() == 3, to + std::ptrdiff_t{y} * from.cols);
+    }
   }
 };
 
@@ -114,14 +134,7 @@ void Encoder::Encode(const ImageView& image, std::span<std::uint64_t> pattern, P
   Require(pattern.size() == pattern_words(), "pattern",
           fmt::format("room for {} words where {} are written", pattern.size(), pattern_words()));
   state.Look(image, shift);
-  state.CodeRows(state.window, state.values.data());
-  if (state.options.blur) {
-    const int size = BlurSize(state.options, state.window.cols);
-    cv::GaussianBlur(state.window, state.blurred, cv::Size(size, size),
-                     state.options.blur_sigma * BlurScale(state.window.cols), 0,
-                     cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
-    state.CodeRows(state.blurred, state.values.data() + state.values.size() / 2);
-  }
+  state.CodeWindow();
   const Kernel& kernel = *Kernels().front();
   state.pool.For(state.synapses.neurons(), 256, [&](std::int64_t begin, std::int64_t end) {
     kernel.cells(state.values.data(), state.offsets.data(), static_cast<int>(begin),
