@@ -5,7 +5,7 @@ PACKAGES = build-essential cmake ninja-build ccache pkg-config \
   gnuplot-nox
 RECOLLECT = build/recollect
 
-# make demo DATA=folder: the laps to show; see docs/data.md.
+# make demo DATA=folder: the laps to show (docs/data.md); without, it renders some.
 DATA =
 
 .PHONY: setup build test sanitize demo format
@@ -30,7 +30,7 @@ build: setup
 test: build
 	ctest --preset default
 
-# Maps all laps of DATA but the last, trains on them, localises the last, draws the picture.
+# Maps all laps but the last, trains on them, localises the last, draws the picture.
 demo: build
 	@$(RECOLLECT) demo $(if $(DATA),--data $(DATA))
 

@@ -10,6 +10,7 @@
 #include "recollect/core/stopwatch.h"
 #include "recollect/dataset/reader.h"
 #include "recollect/evaluation/report.h"
+#include "recollect/simulation/simulate.h"
 
 namespace recollect::app {
 namespace {
@@ -22,18 +23,33 @@ struct Options {
   EvaluationOptions evaluation;
 };
 
-constexpr const char* kHowToGetData =
-    "name a folder with two or more laps of one route: make demo DATA=folder. A lap is a folder in "
-    "KITTI's style: image_2/, depth/, poses.txt, times.txt, calib.txt (see docs/data.md)";
+constexpr const char* kDemoLaps = "1-3";
+
+// Three drives, weeks apart, around a ring of 400 m.
+void RenderRing(const Options& options, const std::filesystem::path& folder) {
+  simulation::SimulateOptions simulated;
+  simulated.laps = kDemoLaps;
+  simulated.out = folder;
+  simulated.depth = true;
+  simulated.seed = options.common.seed;
+  simulated.threads = options.common.threads;
+  simulation::Simulate(simulated, TerminalProgress());
+}
 
 void Run(Options options) {
-  Require(!options.data.empty(), "demo", "no data to show", kHowToGetData);
   const Stopwatch whole;
+  const bool rendered = options.data.empty();
+  const int stages = rendered ? 5 : 4;
   int stage = 0;
   const auto say = [&](const std::string& what) {
-    fmt::print("[{}/4] {:5.0f} s  {}\n", ++stage, whole.Seconds(), what);
+    fmt::print("[{}/{}] {:5.0f} s  {}\n", ++stage, stages, whole.Seconds(), what);
     std::fflush(stdout);
   };
+  if (rendered) {
+    options.data = options.out / "ring";
+    say(fmt::format("render three drives on different days into {}", options.data.string()));
+    RenderRing(options, options.data);
+  }
 
   std::vector<Lap> laps = ReadLaps(options.data);
   Require(laps.size() >= 2, options.data.string(), "has one lap only",
@@ -48,8 +64,10 @@ void Run(Options options) {
   CreateMap(map_file, laps, options.map, pool, TerminalProgress());
   const Map map = Map::Open(map_file);
 
-  say(fmt::format("train the {} network on the same laps, at most {:.0f} minutes",
-                  cnn::Name(options.train.network), options.train.minutes));
+  if (options.train.minutes <= 0) options.train.minutes = rendered ? 6 : 30;
+  say(fmt::format("train the {} network on the same laps, at most {:.0f} minutes{}",
+                  cnn::Name(options.train.network), options.train.minutes,
+                  options.train.start.empty() ? "" : ", from " + options.train.start.string()));
   options.train.seed = options.common.seed;
   options.train.threads = options.common.threads;
   options.train.out = options.out / "demo.model";
@@ -60,7 +78,8 @@ void Run(Options options) {
   Localizer localizer(map, cnn::PoseNetwork::Load(options.train.out, options.common.threads), pool);
   const Evaluation evaluation = Evaluate(localizer, live, options.evaluation, TerminalProgress());
 
-  say("draw and write what came of it\n");
+  say(rendered ? "draw and write what came of it (rendered images)\n"
+               : "draw and write what came of it\n");
   WriteReport(evaluation, map, options.out);
   fmt::print(
       "{}\nsystem: network of weightless neurons + relative-pose network; oracle: told the "
@@ -73,16 +92,21 @@ void Run(Options options) {
 
 void AddDemo(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  options->train.minutes = 30;
-  CLI::App* command = AddCommand(
-      app, "demo", "Map all laps of a folder but the last, train, localise the last, show it",
-      options->common, [options] { Run(*options); });
-  command->add_option("--data", options->data, "folder of laps")->type_name("DIR");
+  CLI::App* command =
+      AddCommand(app, "demo", "Map all laps but the last, train, localise the last, show it",
+                 options->common, [options] { Run(*options); });
+  command
+      ->add_option("--data", options->data,
+                   "folder of laps (docs/data.md); without: three laps of a simulated campus")
+      ->type_name("DIR");
+  command->add_option("--start", options->train.start, "a model to begin the training with")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
   command->add_option("--out", options->out, "folder for map, model, picture and figures")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--minutes", options->train.minutes, "bound on the training time")
-      ->capture_default_str();
+  command->add_option("--minutes", options->train.minutes,
+                      "bound on the training time; default: 30, or 6 without --data");
   command->add_option("--spacing", options->map.spacing_m, "metres between key frames of a lap")
       ->capture_default_str();
 }

@@ -55,6 +55,7 @@ struct TrainCommand {
     options.out = given.out;
     options.csv = given.csv;
     options.checkpoint = given.checkpoint;
+    options.start = given.start;
     options.resume = given.resume;
     return options;
   }
@@ -124,6 +125,8 @@ void AddTrain(CLI::App& app) {
   command.add_option("--patience", given.patience, "validations without gain before the end");
   command.add_option("--csv", given.csv, "file for the curves");
   command.add_option("--checkpoint", given.checkpoint, "default: OUT.checkpoint");
+  command.add_option("--start", given.start, "a model to begin with; without: fresh weights")
+      ->check(CLI::ExistingFile);
   command.add_flag("--resume", given.resume, "take up from the checkpoint if there is one");
 }
 

@@ -24,6 +24,20 @@ void RequireCrop(const cv::Mat& image, const Crop& crop) {
                       image.rows, crop.width, crop.height));
 }
 
+TensorFile ReadModel(const std::filesystem::path& path) {
+  TensorFile file = ReadTensorFile(path);
+  Require(file.header.contains("model"), path.string(), "is not a model (a checkpoint?)",
+          "give the file that 'recollect train --out' wrote");
+  return file;
+}
+
+void CopyWeights(const TensorFile& file, const std::string& where, PairNetwork& network) {
+  const torch::NoGradGuard no_gradients;
+  for (auto& parameter : network.named_parameters()) {
+    parameter.value().copy_(file.Find(parameter.key(), parameter.value(), where));
+  }
+}
+
 }  // namespace
 
 PoseNetwork::PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network)
@@ -33,16 +47,19 @@ PoseNetwork::PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network)
 
 PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads) {
   SetThreads(threads);
-  const TensorFile file = ReadTensorFile(path);
-  Require(file.header.contains("model"), path.string(), "is not a model (a checkpoint?)",
-          "give the file that 'recollect train --out' wrote");
+  const TensorFile file = ReadModel(path);
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), path.string());
   auto network = MakeNetwork(info.network, info.camera);
-  const torch::NoGradGuard no_gradients;
-  for (auto& parameter : network->named_parameters()) {
-    parameter.value().copy_(file.Find(parameter.key(), parameter.value(), path.string()));
-  }
+  CopyWeights(file, path.string(), *network);
   return {info, network};
+}
+
+void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network) {
+  const TensorFile file = ReadModel(model);
+  const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), model.string());
+  Require(info.network == kind, model.string(),
+          fmt::format("is a network {} where {} is trained", Name(info.network), Name(kind)));
+  CopyWeights(file, model.string(), network);
 }
 
 PoseNetwork PoseNetwork::Untrained(int image_width, int image_height) {

@@ -53,4 +53,8 @@ class PoseNetwork {
   std::shared_ptr<PairNetwork> network_;
 };
 
+// Copies a model file's weights into a network of the same kind, made for any camera. Throws Error
+// as PoseNetwork::Load does, and where the kinds differ.
+void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network);
+
 }  // namespace recollect::cnn

@@ -48,6 +48,7 @@ std::string ToJson(const TrainOptions& o) {
                         {"validation_pairs", o.validation_pairs},
                         {"patience", o.patience},
                         {"validation_share", o.validation_share},
+                        {"start", o.start.string()},
                         {"seed", o.seed}}
       .dump();
 }

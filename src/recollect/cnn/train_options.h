@@ -45,6 +45,8 @@ struct TrainOptions {
   std::uint64_t seed = 1;
   int threads = 0;  // 0: one for each core
 
+  std::filesystem::path
+      start;                  // a model file whose weights training begins with; empty: fresh ones
   std::filesystem::path out;  // the model file; the best by validation so far is always there
   std::filesystem::path csv;  // curves, a row a validation; empty: none
   // Where training can be taken up again; written at each validation, removed at the end.

@@ -12,6 +12,7 @@
 #include "recollect/cnn/checkpoint.h"
 #include "recollect/cnn/loader.h"
 #include "recollect/cnn/pair_network.h"
+#include "recollect/cnn/pose_network.h"
 #include "recollect/cnn/threads.h"
 #include "recollect/cnn/training_data.h"
 #include "recollect/cnn/training_loss.h"
@@ -61,6 +62,7 @@ class Trainer {
         total_steps_(per_epoch_ * options.epochs) {
     torch::manual_seed(SubSeed(options.seed, 0));
     network_ = MakeNetwork(options.network, data.train.camera);
+    if (!options.start.empty()) CopyWeights(options.start, options.network, *network_);
     adam_ =
         std::make_unique<Adam>(*network_, AdamOptions{.weight_decay = options.weight_decay,
                                                       .gradient_limit = options.gradient_limit});
@@ -72,6 +74,7 @@ class Trainer {
     Loader loader(data_.train, {options_.network, options_.batch, options_.augment, options_.seed},
                   state_.step);
     const std::int64_t every = options_.validate_steps > 0 ? options_.validate_steps : per_epoch_;
+    if (!options_.start.empty() && state_.step == 0) Validate();  // it may be the best already
     while (!Finished()) {
       Step(loader.Next(), loss);
       if (state_.step % every == 0) Validate();

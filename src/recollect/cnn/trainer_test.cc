@@ -127,6 +127,21 @@ TEST_F(TrainerTest, ResumedTrainingIsAsIfItHadNeverStopped) {
   }
 }
 
+TEST_F(TrainerTest, BeginsWithTheWeightsOfAModel) {
+  const TrainResult first = Run(Options("first"));
+  TrainOptions options = Options("second");
+  options.start = Options("first").out;
+  const TrainResult second = Run(options);
+  EXPECT_EQ(second.curve.front().step, 0);
+  EXPECT_EQ(second.curve.front().valid_position_m, first.model.validation.position_mean_m);
+  EXPECT_LE(second.model.validation.position_mean_m, first.model.validation.position_mean_m);
+
+  options.network = NetworkKind::kPaperB;
+  EXPECT_THROW(Run(options), Error);
+  options.start = "nowhere.model";
+  EXPECT_THROW(Run(options), Error);
+}
+
 TEST_F(TrainerTest, RefusesForeignCheckpoints) {
   TrainOptions options = Options("other");
   RunUntilPowerCut(options);

@@ -54,7 +54,8 @@ std::int64_t ExpectSame(const Kernel& kernel, const Case& c, std::uint64_t seed)
   const auto words_of_query = static_cast<std::size_t>(c.neurons) * kWords;
   const Words patterns =
       Fill(words_of_query * static_cast<std::size_t>(c.queries), c.content, ~seed);
-  const auto scan = [&](const Kernel& k, bool batch) {
+  enum class How { kOneByOne, kBatch, kEntryByEntry };
+  const auto scan = [&](const Kernel& k, How how) {
     std::vector<Answer> answers(static_cast<std::size_t>(c.neurons * c.queries), kNoAnswer);
     std::vector<ScanQuery> queries;
     for (int q = 0; q < c.queries; ++q) {
@@ -65,17 +66,29 @@ std::int64_t ExpectSame(const Kernel& kernel, const Case& c, std::uint64_t seed)
     for (int b = 0; b < 2; ++b) {
       const std::uint64_t* low = words.data() + 2 * b * static_cast<std::ptrdiff_t>(row);
       const ScanBlock block = {low, low + row, c.capacity, 1000 * b, c.allowed};
-      if (batch) {
+      if (how == How::kBatch) {
         k.scan_batch(block, queries.data(), c.queries, c.begin, c.end);
-      } else {
-        for (const ScanQuery& query : queries) k.scan(block, query, c.begin, c.end);
+        continue;
+      }
+      for (const ScanQuery& query : queries) {
+        if (how == How::kOneByOne) {
+          k.scan(block, query, c.begin, c.end);
+          continue;
+        }
+        for (int i = 0; i < c.capacity; ++i) {
+          if ((c.allowed >> i & 1) == 0) continue;
+          k.probe({low + i, low + row + i, c.capacity, 1000 * b + i}, query, c.begin, c.end);
+        }
       }
     }
     return answers;
   };
-  const auto expected = scan(kPlainKernel, false);
-  EXPECT_EQ(scan(kernel, false), expected) << kernel.name << " seed " << seed;
-  EXPECT_EQ(scan(kernel, true), expected) << kernel.name << " batch, seed " << seed;
+  const auto expected = scan(kPlainKernel, How::kOneByOne);
+  EXPECT_EQ(scan(kernel, How::kOneByOne), expected) << kernel.name << " seed " << seed;
+  EXPECT_EQ(scan(kernel, How::kBatch), expected) << kernel.name << " batch, seed " << seed;
+  if (c.neurons < 10) {  // slow, and one loop for all kernels
+    EXPECT_EQ(scan(kernel, How::kEntryByEntry), expected) << kernel.name << " probe, seed " << seed;
+  }
   return std::int64_t{2} * 2 * c.queries * (c.end - c.begin) * std::popcount(c.allowed);
 }
 
