@@ -7,6 +7,8 @@ namespace recollect::app {
 
 void AddDataset(CLI::App& app);
 void AddDemo(CLI::App& app);
+void AddDepth(CLI::App& app);
+void AddDepthEval(CLI::App& app);
 void AddEvaluate(CLI::App& app);
 void AddExperiment(CLI::App& app);
 void AddExperimentPairs(CLI::App& experiment);

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   using namespace recollect::app;
   AddDataset(app);
   AddDemo(app);
+  AddDepth(app);
+  AddDepthEval(app);
   AddEvaluate(app);
   AddExperiment(app);
   AddLocalize(app);

@@ -27,6 +27,7 @@ NumberedFiles ListImages(const fs::path& folder) {
     const std::string stem = entry.path().stem().string();
     const std::string extension = entry.path().extension().string();
     if (extension != ".png" && extension != ".jpg") continue;
+    if (stem.starts_with('.')) continue;  // left over from a write that was cut short
     std::int64_t number = 0;
     const auto [end, code] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
     Require(code == std::errc() && end == stem.data() + stem.size() && number >= 0,
@@ -179,6 +180,15 @@ bool LooksLikeKitti(const fs::path& folder) {
     if (fs::exists(folder / mark)) return true;
   }
   return false;
+}
+
+StereoCamera ReadKittiStereo(const fs::path& calibration, int width, int height) {
+  const std::map<int, Projection> projections = ReadCalibration(calibration);
+  Lap lap;
+  SetCamera(calibration, projections.contains(2) && projections.contains(3) ? 2 : 0, true, lap);
+  lap.camera.left.width = width;
+  lap.camera.left.height = height;
+  return lap.camera;
 }
 
 Lap ReadKittiLap(const fs::path& folder) {

@@ -27,4 +27,8 @@ bool LooksLikeKitti(const std::filesystem::path& folder);
 // Throws Error, naming file and line, for the first thing that is missing or wrong.
 Lap ReadKittiLap(const std::filesystem::path& folder);
 
+// The pair of cameras of a calib.txt as above: P2 and P3 where there are both, else P0 and P1.
+// width, height: of its images. Throws Error as above, and where the second is not to the right.
+StereoCamera ReadKittiStereo(const std::filesystem::path& calibration, int width, int height);
+
 }  // namespace recollect
