@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "commands.h"
+#include "experiment_labels.h"
 #include "recollect/evaluation/data_tables.h"
 
 namespace recollect::app {
@@ -36,6 +37,7 @@ void AddExperiment(CLI::App& app) {
   experiment->require_subcommand(1);
   AddExperimentTables(*experiment);
   AddExperimentPairs(*experiment);
+  AddExperimentLabels(*experiment);
 }
 
 }  // namespace recollect::app

@@ -7,6 +7,7 @@ namespace recollect::simulation {
 namespace {
 
 int Wrap(int i, int period) {
+  if (i >= 0 && i < period) return i;
   const int r = i % period;
   return r < 0 ? r + period : r;
 }
@@ -56,7 +57,7 @@ CellNoise Cells(float x, float y, int period, std::uint32_t seed) {
       const std::uint32_t h = LatticeHash(Wrap(i, period), Wrap(j, period), seed);
       const float px = static_cast<float>(i) + static_cast<float>(h & 0xffff) / 65536.0F;
       const float py = static_cast<float>(j) + static_cast<float>(h >> 16) / 65536.0F;
-      const float d = std::hypot(px - x, py - y);
+      const float d = std::sqrt((px - x) * (px - x) + (py - y) * (py - y));
       if (d < result.nearest) {
         result = {d, result.nearest, h};
       } else {

@@ -153,7 +153,7 @@ class Frame {
     rays.flags[k] = 0;
   }
 
-  // Four rays instead of one where neighbours differ in object and in brightness.
+  // Three rays instead of one where neighbours differ in object and in brightness.
   void Refine(Rendering& out, const std::vector<std::uint32_t>& ids) const {
     const auto differ = [&](std::size_t a, std::size_t b) {
       if (ids[a] == ids[b]) return false;
@@ -170,9 +170,9 @@ class Frame {
         }
       }
     }
-    constexpr int kExtra = 3;
+    constexpr int kExtra = 2;
     constexpr std::array<std::array<float, 2>, kExtra> kOffsets = {
-        {{-0.35F, -0.2F}, {0.3F, -0.3F}, {0.05F, 0.38F}}};
+        {{-0.33F, -0.25F}, {0.25F, 0.33F}}};
     std::array<Pixel, kPacket> queue;
     std::array<Sample, kPacket> samples;
     int count = 0;
@@ -181,7 +181,7 @@ class Frame {
       for (int k = 0; k < count; k += kExtra) {
         const auto q = static_cast<std::size_t>(k);
         Color& pixel = out.radiance[out.Index(queue[q].x, queue[q].y)];
-        pixel = (pixel + samples[q].color + samples[q + 1].color + samples[q + 2].color) * 0.25F;
+        pixel = (pixel + samples[q].color + samples[q + 1].color) * (1 / 3.0F);
       }
       count = 0;
     };

@@ -30,7 +30,7 @@ struct View {
   SE3 world_from_camera, world_from_camera_last;
 };
 
-// Renders one view: one ray a pixel with its shadow ray, three more where outlines would show
+// Renders one view: one ray a pixel with its shadow ray, two more where outlines would show
 // steps. One thread; call it from as many as you like. `movers` may be null.
 Rendering Render(const Scene& scene, const PictureSet& pictures, const Sky& sky, float wetness,
                  const View& view, const Movers* movers);

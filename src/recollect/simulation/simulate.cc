@@ -89,7 +89,7 @@ std::string Describe(const SimulateOptions& o, const Route& route, const Drive& 
       Name(day.weather), std::asin(day.to_sun.z()) / kDegree, frames, o.spacing, o.every,
       route.origin_utm.x(), route.origin_utm.y(), c.strength, c.light, c.structures, c.traffic,
       c.season, o.baseline, o.rolling_shutter, o.jpeg_quality, o.stereo, o.depth, o.depth_step,
-      o.faults, o.seed, 1);
+      o.faults, o.seed, 2);
 }
 
 std::string Readme(const SimulateOptions& o, const Route& route) {
@@ -261,7 +261,6 @@ SimulateResult Simulate(const SimulateOptions& options, const ProgressSink& prog
   const Campus campus(route, SubSeed(options.seed, 0xca));
 
   ThreadPool pool(options.threads);
-  const PictureSet pictures(pool);
   AtomicWrite(options.out / "README.md", Readme(options, route));
   if (!route.registration.empty()) {
     std::string text = "# x y z of the car on an earlier, unrendered drive\n";
@@ -270,6 +269,8 @@ SimulateResult Simulate(const SimulateOptions& options, const ProgressSink& prog
     AtomicWrite(options.out / "registration.txt", text);
   }
 
+  // The same in every world: painted once in the life of a program.
+  static const PictureSet pictures(pool);
   SimulateResult result;
   const Stopwatch watch;
   std::mutex mutex;

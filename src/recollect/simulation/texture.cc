@@ -142,7 +142,7 @@ Color Texture::Sample(float u, float v, float minor, float du, float dv) const {
   const bool both = mix > 0 && mix < 1 && level + 1 < levels_;
   const std::uint8_t* texels = &rgba_[offsets_[static_cast<std::size_t>(near)]];
   const std::uint8_t* next = both ? &rgba_[offsets_[static_cast<std::size_t>(near) + 1]] : nullptr;
-  const int taps = major > 1.5F * width ? std::min(4, static_cast<int>(major / width + 0.5F)) : 1;
+  const int taps = std::clamp(static_cast<int>(0.75F * major / width + 0.5F), 1, 3);
   const float step = 1 / static_cast<float>(taps);
   Float4 sum{};
   for (int i = 0; i < taps; ++i) {

@@ -27,7 +27,7 @@ class Texture {
   int size() const { return size_; }
 
   // Colour averaged over a parallelogram-like footprint about (u, v): `minor` tiles wide across
-  // and (du, dv) tiles long along its major axis. Mixes mip levels, with up to four taps along the
+  // and (du, dv) tiles long along its major axis. Mixes mip levels, with up to three taps along the
   // axis.
   Color Sample(float u, float v, float minor, float du, float dv) const;
 
