@@ -5,6 +5,7 @@
 #include "command.h"
 #include "commands.h"
 #include "experiment_labels.h"
+#include "recognition_commands.h"
 #include "recollect/evaluation/data_tables.h"
 
 namespace recollect::app {
@@ -38,6 +39,8 @@ void AddExperiment(CLI::App& app) {
   AddExperimentTables(*experiment);
   AddExperimentPairs(*experiment);
   AddExperimentLabels(*experiment);
+  AddExperimentPlaces(*experiment);
+  AddExperimentAblation(*experiment);
 }
 
 }  // namespace recollect::app

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "commands.h"
+#include "recognition_commands.h"
 #include "recollect/core/error.h"
 
 int main(int argc, char** argv) {
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   AddPlaces(app);
   AddSimulate(app);
   AddTrain(app);
+  AddTune(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

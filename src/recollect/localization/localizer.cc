@@ -2,6 +2,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/stopwatch.h"
+#include "recollect/wnn/displaced.h"
 
 namespace recollect {
 
@@ -51,7 +52,7 @@ wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& 
           "localise with the camera that made the map");
   const wnn::ImageView view{image.data, image.cols, image.rows, 3,
                             static_cast<std::ptrdiff_t>(image.step)};
-  return wnn::Recollect(map_.memory(), encoder_.Encode(view), pool_, search_);
+  return wnn::RecollectImage(map_.memory(), encoder_, view, pool_, search_);
 }
 
 SE3 Localizer::Relate(const cv::Mat& live, const cv::Mat& key_frame) {

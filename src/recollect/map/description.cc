@@ -1,5 +1,7 @@
 #include "recollect/map/description.h"
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "recollect/core/error.h"
@@ -9,7 +11,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
+
+constexpr std::array kCodes = {"colour", "gray", "opponent"};   // as wnn::Code counts them
+constexpr std::array kCells = {"compare", "gradient", "rank"};  // as wnn::Cells does
+
+template <typename Enum, std::size_t kCount>
+Enum FromName(const json& name, const std::array<const char*, kCount>& names) {
+  const auto found = std::find(names.begin(), names.end(), name.get<std::string>());
+  if (found == names.end()) throw json::other_error::create(501, "unknown name", &name);
+  return static_cast<Enum>(found - names.begin());
+}
 
 json PoseToJson(const SE3& pose) {
   json rows = json::array();
@@ -30,7 +42,15 @@ SE3 PoseFromJson(const json& rows) {
 json NetworkToJson(const wnn::NetworkOptions& network) {
   return {{"neurons_x", network.neurons_x},
           {"neurons_y", network.neurons_y},
-          {"code", network.code == wnn::Code::kColour ? "colour" : "gray"},
+          {"code", kCodes.at(static_cast<std::size_t>(network.code))},
+          {"cells", kCells.at(static_cast<std::size_t>(network.cells))},
+          {"working_width", network.working_width},
+          {"contrast_sigma", network.contrast_sigma},
+          {"gradient_arm", network.gradient_arm},
+          {"blur_scales", network.blur_scales},
+          {"shift_x", network.shift_x},
+          {"shift_y", network.shift_y},
+          {"shift_step", network.shift_step},
           {"window_aspect", network.window_aspect},
           {"gaussian_synapses", network.gaussian_synapses},
           {"gaussian_sigma", network.gaussian_sigma},
@@ -44,7 +64,15 @@ wnn::NetworkOptions NetworkFromJson(const json& j) {
   wnn::NetworkOptions network;
   j.at("neurons_x").get_to(network.neurons_x);
   j.at("neurons_y").get_to(network.neurons_y);
-  network.code = j.at("code") == "colour" ? wnn::Code::kColour : wnn::Code::kGray;
+  network.code = FromName<wnn::Code>(j.at("code"), kCodes);
+  network.cells = FromName<wnn::Cells>(j.at("cells"), kCells);
+  j.at("working_width").get_to(network.working_width);
+  j.at("contrast_sigma").get_to(network.contrast_sigma);
+  j.at("gradient_arm").get_to(network.gradient_arm);
+  j.at("blur_scales").get_to(network.blur_scales);
+  j.at("shift_x").get_to(network.shift_x);
+  j.at("shift_y").get_to(network.shift_y);
+  j.at("shift_step").get_to(network.shift_step);
   j.at("window_aspect").get_to(network.window_aspect);
   j.at("gaussian_synapses").get_to(network.gaussian_synapses);
   j.at("gaussian_sigma").get_to(network.gaussian_sigma);

@@ -53,8 +53,9 @@ class Map {
 };
 
 struct MapOptions {
-  double spacing_m = 5;         // between key frames of a lap; 10 degrees of turn also make one
-  wnn::NetworkOptions network;  // the weightless network; fixed for the life of the map
+  double spacing_m = 5;  // between key frames of a lap; 10 degrees of turn also make one
+  // The weightless network; fixed for the life of the map.
+  wnn::NetworkOptions network = wnn::RecollectNetwork();
 };
 
 // Makes a map of key frames sampled from `laps`, which must have images of one size and poses in

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
+#include "recollect/wnn/invariant.h"
 #include "recollect/wnn/kernel.h"
 
 namespace recollect::wnn {
@@ -42,9 +44,14 @@ struct Encoder::State {
   std::vector<std::int32_t> offsets;  // neurons x kSynapses, into values
   std::vector<std::int32_t> values;   // the sharp window, then the blurred one
   cv::Mat kept, window, blurred;
+  std::optional<InvariantEncoder> invariant;  // takes the place of all that, where wanted
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
       : options(o), synapses(o, width, height), image_height(height), pool(p) {
+    if (InvariantEncoder::Wanted(options)) {
+      invariant.emplace(options, width, height, pool);
+      return;
+    }
     const int uniform = kSynapses - options.gaussian_synapses;
     const int area = synapses.window_width() * synapses.window_height();
     values.resize(static_cast<std::size_t>(options.blur ? 2 * area : area));
@@ -69,11 +76,14 @@ struct Encoder::State {
             "give 1 or 3 channels of 8 bits");
   }
 
+  static cv::Mat Whole(const ImageView& image) {
+    return {image.height, image.width, image.channels == 3 ? CV_8UC3 : CV_8UC1,
+            const_cast<std::uint8_t*>(image.data), static_cast<std::size_t>(image.stride)};
+  }
+
   // Fills `window` with the part of the image that is looked at, in the channels of the code.
   void Look(const ImageView& image, Pixel shift) {
-    const cv::Mat whole(image.height, image.width, image.channels == 3 ? CV_8UC3 : CV_8UC1,
-                        const_cast<std::uint8_t*>(image.data),
-                        static_cast<std::size_t>(image.stride));
+    const cv::Mat whole = Whole(image);
     const int width = synapses.window_width(), height = synapses.window_height();
     cv::Mat seen = whole.rowRange(0, height);
     if (shift.x != 0 || shift.y != 0) {
@@ -124,6 +134,8 @@ Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 
 const Synapses& Encoder::synapses() const { return state_->synapses; }
 
+Displacements Encoder::displacements() const { return DisplacementsOf(state_->options); }
+
 std::size_t Encoder::pattern_words() const {
   return static_cast<std::size_t>(state_->synapses.neurons()) * kWords;
 }
@@ -133,6 +145,10 @@ void Encoder::Encode(const ImageView& image, std::span<std::uint64_t> pattern, P
   state.Check(image);
   Require(pattern.size() == pattern_words(), "pattern",
           fmt::format("room for {} words where {} are written", pattern.size(), pattern_words()));
+  if (state.invariant) {
+    state.invariant->Look(State::Whole(image), shift);
+    return state.invariant->Encode(shift, pattern);
+  }
   state.Look(image, shift);
   state.CodeWindow();
   const Kernel& kernel = *Kernels().front();
@@ -146,6 +162,29 @@ std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) 
   std::vector<std::uint64_t> pattern(pattern_words());
   Encode(image, pattern, shift);
   return pattern;
+}
+
+std::vector<std::vector<std::uint64_t>> Encoder::EncodeDisplaced(const ImageView& image) {
+  State& state = *state_;
+  state.Check(image);
+  const Displacements grid = DisplacementsOf(state.options);
+  const double unit = grid.step * image.width / 640.0;
+  const auto pixels = [&](int steps) { return static_cast<int>(std::lround(steps * unit)); };
+  if (state.invariant) {
+    state.invariant->Look(State::Whole(image), {pixels(grid.columns / 2), pixels(grid.rows / 2)});
+  }
+  std::vector<std::vector<std::uint64_t>> patterns;
+  for (int i = 0; i < grid.count(); ++i) {
+    const Pixel shift{pixels(i % grid.columns - grid.columns / 2),
+                      pixels(i / grid.columns - grid.rows / 2)};
+    patterns.emplace_back(pattern_words());
+    if (state.invariant) {
+      state.invariant->Encode(shift, patterns.back());
+    } else {
+      Encode(image, patterns.back(), shift);
+    }
+  }
+  return patterns;
 }
 
 }  // namespace recollect::wnn

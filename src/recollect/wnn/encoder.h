@@ -34,6 +34,7 @@ class Encoder {
   Encoder& operator=(Encoder&&) noexcept;
 
   const Synapses& synapses() const;
+  Displacements displacements() const;
   // 64-bit words of one image's pattern: neurons x 2, the bits of synapses 0..63 first.
   std::size_t pattern_words() const;
 
@@ -42,6 +43,9 @@ class Encoder {
   // its border repeated where that leaves it.
   void Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift = {});
   std::vector<std::uint64_t> Encode(const ImageView& image, Pixel shift = {});
+
+  // The image under all of the network's displacements, row by row (DisplacementsOf).
+  std::vector<std::vector<std::uint64_t>> EncodeDisplaced(const ImageView& image);
 
  private:
   struct State;

@@ -24,6 +24,12 @@ void Check(const NetworkOptions& options, int width, int height) {
   Require(options.blur_size > 0 && options.blur_size % 2 == 1, where,
           "blur_size must be odd and positive");
   Require(options.window_aspect > 0, where, "window_aspect must be positive");
+  Require(options.working_width >= 0 && options.contrast_sigma >= 0 && options.gradient_arm > 0 &&
+              options.blur_scales >= 1 && options.blur_scales <= 4,
+          where,
+          "working_width and contrast_sigma must not be negative, gradient_arm positive, "
+          "blur_scales 1 to 4");
+  DisplacementsOf(options);
   Require(width >= 8 && height >= 8 && width <= 1 << 14 && height <= 1 << 14, where,
           "images must be 8 to 16384 pixels a side");
 }
@@ -41,6 +47,29 @@ std::vector<Pixel> ShuffledCells(const NetworkOptions& options) {
 }
 
 }  // namespace
+
+NetworkOptions RecollectNetwork() {
+  NetworkOptions options;
+  options.neurons_x = 32;
+  options.neurons_y = 18;
+  options.code = Code::kOpponent;
+  options.cells = Cells::kGradient;
+  options.gaussian_synapses = kSynapses;
+  options.blur = false;
+  options.working_width = 160;
+  options.shift_x = 64;
+  options.shift_y = 32;
+  return options;
+}
+
+Displacements DisplacementsOf(const NetworkOptions& options) {
+  Require(options.shift_x >= 0 && options.shift_y >= 0 && options.shift_step > 0 &&
+              options.shift_x / options.shift_step <= 16 &&
+              options.shift_y / options.shift_step <= 16,
+          "network", "shift_x and shift_y must be 0 to 16 times shift_step");
+  return {2 * (options.shift_x / options.shift_step) + 1,
+          2 * (options.shift_y / options.shift_step) + 1, options.shift_step};
+}
 
 Synapses::Synapses(const NetworkOptions& options, int image_width, int image_height) {
   Check(options, image_width, image_height);

@@ -11,8 +11,15 @@ inline constexpr int kSynapses = 128;
 inline constexpr int kWords = 2;
 
 // How a pixel becomes the one number that synapses compare. kColour: R + 256 G + 65536 B, so blue
-// decides, as the reference does. kGray: luma. On gray images both order pixels alike.
-enum class Code { kColour, kGray };
+// decides, as the reference does. kGray: luma. On gray images both order pixels alike. kOpponent: a
+// third of a neuron's synapses each reads luma, red against blue, and green against both, so that
+// hue counts beside brightness and none of them decides alone.
+enum class Code { kColour, kGray, kOpponent };
+
+// What a bit says of the value v under its synapse. kCompare: v is below the next synapse's
+// (Minchinton). kGradient: v rises to the right (even synapses) or down (odd ones). kRank: v is
+// above the median of its neuron's synapses.
+enum class Cells { kCompare, kGradient, kRank };
 
 // The VG-RAM network (Forechi et al. 2018, section III-A). Lengths in pixels are those of a
 // 640 pixels wide image and scale with the width; the defaults are the reference's network.
@@ -28,8 +35,32 @@ struct NetworkOptions {
   int blur_size = 33;          // side of the blurring kernel; pixels
   std::uint64_t seed = 1;      // of the synapses and of the order of neurons
 
+  // Beyond the reference, see docs/recognition.md; all of it off by default.
+  Cells cells = Cells::kCompare;
+  int working_width = 0;      // wider images are scaled down to it first; 0: none are
+  double contrast_sigma = 0;  // local contrast normalisation over so wide a surrounding; 0: none
+  double gradient_arm = 12;   // of kGradient: pixels from the synapse to either end
+  int blur_scales = 1;        // blurred copies; each is blurred twice as much as the one before
+  // A live image is looked at under displacements of up to so many pixels either way, one every
+  // shift_step; 0: only as it is.
+  int shift_x = 0, shift_y = 0;
+  int shift_step = 16;
+
   int neurons() const { return neurons_x * neurons_y; }
 };
+
+// The configuration that this project recommends, chosen as docs/recognition.md tells.
+NetworkOptions RecollectNetwork();
+
+// The displacements of live images: rows of a grid, all of one length, in pixels of a 640 pixels
+// wide image. {0, 0} alone where the options ask for none. Throws Error on options out of range.
+struct Displacements {
+  int columns = 1, rows = 1;
+  int step = 0;  // from one to the next
+
+  int count() const { return columns * rows; }
+};
+Displacements DisplacementsOf(const NetworkOptions& options);
 
 // A pixel of the window.
 struct Pixel {

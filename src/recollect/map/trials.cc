@@ -1,0 +1,138 @@
+#include "recollect/map/trials.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recollect/core/parallel.h"
+#include "recollect/core/random.h"
+#include "recollect/dataset/perturbation.h"
+#include "recollect/map/map.h"
+#include "recollect/wnn/displaced.h"
+#include "recollect/wnn/entry_set.h"
+
+namespace recollect {
+namespace {
+
+constexpr double kLapBreak = 3;  // spacings
+constexpr double kLoop = 2;      // spacings
+constexpr double kAlike = 0.5;   // cosine of the angle between views of one place
+
+double Apart(const KeyFrame& a, const KeyFrame& b) {
+  return (a.world_from_camera.translation() - b.world_from_camera.translation()).norm();
+}
+bool LookAlike(const KeyFrame& a, const KeyFrame& b) {
+  return a.world_from_camera.rotation().col(2).dot(b.world_from_camera.rotation().col(2)) > kAlike;
+}
+
+// The nearest key frame of another lap that may show the same place, -1 where there is none.
+int Beside(const std::vector<KeyFrame>& frames, const KeyFrame& frame, std::uint32_t lap,
+           double within) {
+  int best = -1;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double distance = Apart(frames[i], frame);
+    if (frames[i].lap != lap || distance > within || !LookAlike(frames[i], frame)) continue;
+    best = static_cast<int>(i);
+    within = distance;
+  }
+  return best;
+}
+
+// Takes a place, those beside it and `far` places either way of all of them out of `allowed`.
+void TakeAway(const wnn::Route& route, int place, int far, std::vector<bool>& allowed) {
+  std::vector<int> centres = route.beside[static_cast<std::size_t>(place)];
+  centres.push_back(place);
+  for (const int centre : centres) {
+    for (const auto& along : {route.next, route.before}) {
+      int at = centre;
+      for (int i = 0; i <= far && at >= 0; ++i, at = along[static_cast<std::size_t>(at)]) {
+        allowed[static_cast<std::size_t>(at)] = false;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+wnn::Route RouteOf(const Map& map) {
+  std::vector<KeyFrame> frames;
+  for (int key = 0; key < map.size(); ++key) frames.push_back(map.At(key));
+  return RouteOf(frames, map.description().spacing_m);
+}
+
+wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
+  const auto size = static_cast<int>(frames.size());
+  wnn::Route route = wnn::ChainRoute(size);
+  const double spacing = std::max(spacing_m, 0.1);
+  std::uint32_t laps = 0;
+  for (const KeyFrame& frame : frames) laps = std::max(laps, frame.lap + 1);
+  int first = 0;  // of the lap
+  for (int key = 0; key < size; ++key) {
+    const auto i = static_cast<std::size_t>(key);
+    for (std::uint32_t lap = 0; lap < laps; ++lap) {
+      if (lap == frames[i].lap) continue;
+      const int other = Beside(frames, frames[i], lap, spacing);
+      if (other >= 0) route.beside[i].push_back(other);
+    }
+    const bool ends = key + 1 == size || frames[i + 1].lap != frames[i].lap;
+    if (!ends && Apart(frames[i], frames[i + 1]) <= kLapBreak * spacing) continue;
+    route.next[i] = -1;
+    if (key + 1 < size) route.before[i + 1] = -1;
+    if (!ends) continue;
+    const auto start = static_cast<std::size_t>(first);
+    if (key - first > 2 * kLoop && Apart(frames[i], frames[start]) <= kLoop * spacing &&
+        LookAlike(frames[i], frames[start])) {
+      route.next[i] = first;
+      route.before[start] = key;
+    }
+    first = key + 1;
+  }
+  return route;
+}
+
+std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
+                                   const TrialOptions& options, const ProgressSink& progress) {
+  const wnn::Route& route = mapped.route;
+  const bool one_lap = std::all_of(mapped.lap.begin(), mapped.lap.end(),
+                                   [&](int lap) { return lap == mapped.lap.front(); });
+  std::vector<wnn::Trial> trials;
+  for (int entry = 0; entry < route.places(); entry += options.stride) {
+    const auto e = static_cast<std::size_t>(entry);
+    cv::Mat image = mapped.image(entry);
+    if (one_lap) image = Perturbed(image, SubSeed(options.seed, e));
+    const wnn::ImageView view{image.data, image.cols, image.rows, 3,
+                              static_cast<std::ptrdiff_t>(image.step)};
+    std::vector<bool> allowed(static_cast<std::size_t>(route.places()));
+    for (std::size_t i = 0; i < allowed.size(); ++i) {
+      allowed[i] = one_lap ? i != e : mapped.lap[i] != mapped.lap[e];
+    }
+    const auto ask = [&](bool nowhere) {
+      wnn::EntrySet set(mapped.memory);
+      wnn::Trial trial;
+      bool found = nowhere;  // whether there is anything to find
+      for (int i = 0; i < route.places(); ++i) {
+        const bool may = allowed[static_cast<std::size_t>(i)];
+        if (may) set.Allow(i);
+        // Places that were taken away are named by the votes of those around them.
+        if (nowhere || !route.WithinOne(entry, i)) continue;
+        trial.right.push_back(i);
+        found = found || may;
+      }
+      if (set.size() == 0 || !found) return;
+      wnn::SearchOptions search;
+      search.allowed = &set;
+      wnn::Recollection one = wnn::RecollectImage(mapped.memory, encoder, view, pool, search);
+      trial.histogram = std::move(one.histogram);
+      trial.neurons = one.neurons_read;
+      trials.push_back(std::move(trial));
+    };
+    ask(false);
+    if (options.nowhere) {
+      TakeAway(route, entry, options.far, allowed);
+      ask(true);
+    }
+    Report(progress, "trials", entry + 1, route.places());
+  }
+  return trials;
+}
+
+}  // namespace recollect

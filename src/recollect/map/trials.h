@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "recollect/core/progress.h"
+#include "recollect/map/map.h"
+#include "recollect/wnn/calibration.h"
+#include "recollect/wnn/encoder.h"
+#include "recollect/wnn/memory.h"
+
+namespace recollect {
+
+class ThreadPool;
+
+// The places of a map: one a key frame, ahead of each other as their lap went, beside each other
+// where key frames of different laps lie closest, at most a spacing apart and looking less than 60
+// degrees away from one another. Laps end where two key frames are more than 3 spacings apart; one
+// whose end lies within 2 spacings of its start goes on there.
+wnn::Route RouteOf(const Map& map);
+// The same of key frames in the order they were learnt, those of a lap together.
+wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m);
+
+// What a memory has learnt, with the images it learnt it from. Entry, label and place are one.
+struct Mapped {
+  const wnn::Memory& memory;
+  const wnn::Route& route;
+  std::vector<int> lap;                     // by entry
+  std::function<cv::Mat(int entry)> image;  // 8-bit B, G, R
+};
+
+struct TrialOptions {
+  int stride = 1;       // every so many-th entry is a live image
+  bool nowhere = true;  // each once more with its place and `far` places around it taken away
+  int far = 10;
+  std::uint64_t seed = 1;
+};
+
+// Trials from mapped images alone: each is looked for among the entries of all other laps. With one
+// lap only, it is perturbed (dataset/perturbation.h) and looked for among the entries but itself.
+std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
+                                   const TrialOptions& options = {},
+                                   const ProgressSink& progress = {});
+
+}  // namespace recollect

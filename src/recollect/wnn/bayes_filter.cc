@@ -1,0 +1,117 @@
+#include "recollect/wnn/bayes_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recollect/core/error.h"
+
+namespace recollect::wnn {
+namespace {
+
+// Places an image: standing, creeping between far-apart key frames, up to passing several at once.
+constexpr double kSpeeds[] = {0, 0.1, 0.2, 0.35, 0.6, 1, 1.5, 2.2, 3.2, 4.5};
+constexpr double kSpeedChange = 0.1;  // chance that speed goes one step up or down
+
+}  // namespace
+
+BayesFilter::BayesFilter(const SequenceOptions& options, const Route& route)
+    : options_(options), route_(route) {
+  if (options.backwards) {
+    for (const double speed : kSpeeds) {
+      if (speed > 0) speeds_.insert(speeds_.begin(), -speed);
+    }
+  }
+  speeds_.insert(speeds_.end(), std::begin(kSpeeds), std::end(kSpeeds));
+  Reset();
+}
+
+void BayesFilter::Reset() {
+  state_.clear();
+  steps_.clear();
+}
+
+BayesFilter::State BayesFilter::Anywhere() const {
+  const double share = 1.0 / static_cast<double>(speeds_.size() * route_.next.size());
+  return State(speeds_.size(), std::vector<double>(route_.next.size(), share));
+}
+
+std::vector<double> BayesFilter::Moved(const std::vector<double>& weights, double places) const {
+  const std::vector<int>& ahead = places >= 0 ? route_.next : route_.before;
+  std::vector<double> from = weights, to(weights.size());
+  for (double left = std::abs(places); left > 0; left -= 1) {
+    const double share = std::min(left, 1.0);
+    std::fill(to.begin(), to.end(), 0.0);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double moving = ahead[i] >= 0 ? share : 0;  // the road's end holds what reaches it
+      to[i] += (1 - moving) * from[i];
+      if (ahead[i] >= 0) to[static_cast<std::size_t>(ahead[i])] += moving * from[i];
+    }
+    std::swap(from, to);
+  }
+  return from;
+}
+
+void BayesFilter::Predict(State& state, std::optional<double> moved) const {
+  const std::size_t speeds = speeds_.size(), places = route_.next.size();
+  State next(speeds);
+  for (std::size_t s = 0; s < speeds; ++s) {
+    // Speed first, then place, then the lap that is followed.
+    std::vector<double> mixed(places);
+    const double stay = 1 - kSpeedChange;
+    const auto& below = state[s == 0 ? 0 : s - 1];
+    const auto& above = state[s + 1 == speeds ? s : s + 1];
+    for (std::size_t i = 0; i < places; ++i) {
+      mixed[i] = stay * state[s][i] + kSpeedChange / 2 * (below[i] + above[i]);
+    }
+    mixed = Moved(mixed, moved ? *moved : speeds_[s]);
+    next[s].assign(places, options_.jump / static_cast<double>(speeds * places));
+    for (std::size_t i = 0; i < places; ++i) {
+      const double kept = (1 - options_.jump) * mixed[i];
+      const auto& beside = route_.beside[i];
+      const double leaving = beside.empty() ? 0 : options_.change_lap;
+      next[s][i] += (1 - leaving) * kept;
+      for (const int other : beside) {
+        next[s][static_cast<std::size_t>(other)] +=
+            leaving * kept / static_cast<double>(beside.size());
+      }
+    }
+  }
+  state = std::move(next);
+}
+
+void BayesFilter::Correct(State& state, const std::vector<double>& likelihood) const {
+  double sum = 0;
+  for (auto& places : state) {
+    for (std::size_t i = 0; i < places.size(); ++i) sum += places[i] *= likelihood[i];
+  }
+  for (auto& places : state) {
+    for (double& weight : places) weight /= sum;
+  }
+}
+
+std::vector<double> BayesFilter::Update(const Observation& observation) {
+  Step step{Likelihood(options_, route_, observation), observation.moved};
+  if (options_.history > 0) {
+    steps_.push_back(std::move(step));
+    if (steps_.size() > static_cast<std::size_t>(options_.history)) steps_.pop_front();
+    state_ = Anywhere();
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (i > 0) Predict(state_, steps_[i].moved);
+      Correct(state_, steps_[i].likelihood);
+    }
+  } else {
+    if (state_.empty()) {
+      state_ = Anywhere();
+    } else {
+      Predict(state_, step.moved);
+    }
+    Correct(state_, step.likelihood);
+  }
+  std::vector<double> belief(route_.next.size(), 0);
+  for (const auto& places : state_) {
+    for (std::size_t i = 0; i < belief.size(); ++i) belief[i] += places[i];
+  }
+  return belief;
+}
+
+}  // namespace recollect::wnn

@@ -1,0 +1,169 @@
+#include "recollect/wnn/calibration.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "recollect/core/error.h"
+
+namespace recollect::wnn {
+namespace {
+
+constexpr double kFloors[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05};
+constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+constexpr double kPrecisions[] = {0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995};
+constexpr double kSmallest = 1e-6;  // chances are kept this far from 0 and 1
+constexpr double kPrior = 0.1;      // pull of the weights towards (0, 1, 0), in trials
+
+double Sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
+double LogOdds(double p) {
+  p = std::clamp(p, kSmallest, 1 - kSmallest);
+  return std::log(p / (1 - p));
+}
+
+struct Features {
+  int place = -1;
+  Eigen::Vector3d x;
+};
+
+Features FeaturesOf(double floor, double trust, const Route& route,
+                    std::span<const LabelVotes> histogram, int neurons) {
+  SequenceOptions options;
+  options.floor = floor;
+  options.trust = trust;
+  std::vector<double> belief = Likelihood(options, route, {histogram, neurons, {}, {}});
+  double sum = 0;
+  for (const double one : belief) sum += one;
+  for (double& one : belief) one /= sum;
+  Features features;
+  features.place = Supported(route, histogram);
+  double within = 0;
+  for (int place = 0; place < route.places(); ++place) {
+    if (route.WithinOne(features.place, place)) within += belief[static_cast<std::size_t>(place)];
+  }
+  const std::vector<double> support = Support(route, histogram);
+  const double most = *std::max_element(support.begin(), support.end());
+  features.x = {1, LogOdds(within), std::log(most / std::max(1, neurons) + kSmallest)};
+  return features;
+}
+
+bool IsRight(const Trial& trial, int place) {
+  return std::find(trial.right.begin(), trial.right.end(), place) != trial.right.end();
+}
+
+// Mean log likelihood of the truth.
+double Fit(const Route& route, std::span<const Trial> trials, double floor, double trust) {
+  SequenceOptions options;
+  options.floor = floor;
+  options.trust = trust;
+  double sum = 0;
+  for (const Trial& trial : trials) {
+    if (trial.right.empty()) continue;
+    const auto likelihood = Likelihood(options, route, {trial.histogram, trial.neurons, {}, {}});
+    double right = 0, all = 0;
+    for (const double one : likelihood) all += one;
+    for (const int place : trial.right) right += likelihood[static_cast<std::size_t>(place)];
+    sum += std::log(std::max(right / all, kSmallest));
+  }
+  return sum;
+}
+
+// Newton's method on the penalised log likelihood of a logistic model.
+Eigen::Vector3d Logistic(const std::vector<Eigen::Vector3d>& x, const std::vector<bool>& right) {
+  const Eigen::Vector3d prior(0, 1, 0);
+  Eigen::Vector3d w = prior;
+  for (int step = 0; step < 50; ++step) {
+    Eigen::Vector3d gradient = kPrior * (w - prior);
+    Eigen::Matrix3d hessian = kPrior * Eigen::Matrix3d::Identity();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double p = Sigmoid(w.dot(x[i]));
+      gradient += (p - (right[i] ? 1 : 0)) * x[i];
+      hessian += std::max(p * (1 - p), kSmallest) * x[i] * x[i].transpose();
+    }
+    const Eigen::Vector3d change = hessian.ldlt().solve(gradient);
+    w -= change * std::min(1.0, 2 / (change.norm() + kSmallest));
+    if (change.norm() < 1e-9) break;
+  }
+  return w;
+}
+
+double Apply(const Calibration& calibration, const Eigen::Vector3d& x) {
+  return Sigmoid(Eigen::Map<const Eigen::Vector3d>(calibration.weights).dot(x));
+}
+
+}  // namespace
+
+Judged Judge(const Calibration& calibration, const Route& route,
+             std::span<const LabelVotes> histogram, int neurons) {
+  if (histogram.empty()) return {};
+  const Features features =
+      FeaturesOf(calibration.floor, calibration.trust, route, histogram, neurons);
+  return {features.place, Apply(calibration, features.x)};
+}
+
+Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
+  Require(
+      std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return !t.right.empty(); }),
+      "calibration", "no trial lies on the route");
+  Calibration calibration;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const double floor : kFloors) {
+    for (const double trust : kTrusts) {
+      const double fit = Fit(route, trials, floor, trust);
+      if (fit <= best) continue;
+      best = fit;
+      calibration.floor = floor;
+      calibration.trust = trust;
+    }
+  }
+  std::vector<Eigen::Vector3d> x;
+  std::vector<bool> right;
+  std::vector<Features> features;
+  for (const Trial& trial : trials) {
+    features.push_back(
+        FeaturesOf(calibration.floor, calibration.trust, route, trial.histogram, trial.neurons));
+    if (trial.right.empty()) continue;
+    x.push_back(features.back().x);
+    right.push_back(IsRight(trial, features.back().place));
+  }
+  Eigen::Map<Eigen::Vector3d>(calibration.weights) = Logistic(x, right);
+
+  std::vector<double> found, nowhere;  // probabilities of either kind of trial
+  std::vector<std::pair<double, bool>> judged;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const double p = Apply(calibration, features[i].x);
+    if (trials[i].right.empty()) {
+      nowhere.push_back(p);
+    } else {
+      judged.emplace_back(p, IsRight(trials[i], features[i].place));
+    }
+  }
+  std::sort(judged.begin(), judged.end(), std::greater<>());
+  for (const double precision : kPrecisions) {
+    double threshold = 1;
+    int kept = 0, correct = 0;
+    for (const auto& [p, is_right] : judged) {
+      ++kept;
+      correct += is_right;
+      const auto strangers = std::count_if(nowhere.begin(), nowhere.end(),
+                                           [p = p](double other) { return other >= p; });
+      if (static_cast<double>(strangers) > (1 - precision) * static_cast<double>(nowhere.size())) {
+        break;
+      }
+      if (correct >= precision * kept) threshold = p;
+    }
+    calibration.thresholds.push_back({precision, threshold});
+  }
+  return calibration;
+}
+
+double ThresholdFor(const Calibration& calibration, double precision) {
+  for (const auto& one : calibration.thresholds) {
+    if (one.precision >= precision) return one.probability;
+  }
+  return 1;
+}
+
+}  // namespace recollect::wnn

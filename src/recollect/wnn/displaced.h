@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "recollect/wnn/encoder.h"
+#include "recollect/wnn/search.h"
+
+namespace recollect::wnn {
+
+// What the committee recollects of a live image. Where the network has displacements, the image is
+// searched for under each of them, all against the one memory, and MergeDisplaced joins the
+// answers; search.stop is then not heeded. Otherwise this is Recollect of the image's pattern.
+// Throws Error where the image is not of the encoder's size.
+Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageView& image,
+                            ThreadPool& pool, const SearchOptions& search = {});
+
+// answers[d][n]: neuron n's under displacement d, row by row of `grid`. Each neuron keeps its best
+// answer over all displacements. An entry's label then gets the votes of those neurons only that
+// agree on how the image is displaced, give or take one step, the ones a step off counted half:
+// a place is one view of a rigid scene, chance likeness is not.
+Recollection MergeDisplaced(std::span<const int> labels,
+                            std::span<const std::vector<Answer>> answers,
+                            const Displacements& grid);
+
+}  // namespace recollect::wnn

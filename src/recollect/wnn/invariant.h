@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "recollect/wnn/network.h"
+
+namespace recollect {
+class ThreadPool;
+}
+
+namespace recollect::wnn {
+
+// Patterns that change less with light and viewpoint than the reference's: of images scaled down,
+// with local contrast normalised, in opponent colours, by other cells (see NetworkOptions).
+class InvariantEncoder {
+ public:
+  // Whether the options ask for anything that the reference's encoder does not have.
+  static bool Wanted(const NetworkOptions& options);
+
+  // Sizes in pixels, of the whole image. `pool` must outlive it.
+  InvariantEncoder(const NetworkOptions& options, int image_width, int image_height,
+                   ThreadPool& pool);
+
+  // Prepares an image of 8-bit gray or B, G, R for Encode with displacements of up to `reach`
+  // either way.
+  void Look(const cv::Mat& image, Pixel reach = {});
+  // The pattern of that image displaced by `shift`, pixels of the image as it was given; its
+  // border is repeated where that leaves it. Writes neurons x kWords words.
+  void Encode(Pixel shift, std::span<std::uint64_t> pattern) const;
+
+ private:
+  Pixel Working(Pixel shift) const;
+  void SetMargin(Pixel margin);
+  void AddPlane(const cv::Mat& channel, double blur);
+  void AddGradients(const cv::Mat& padded);
+
+  NetworkOptions options_;
+  ThreadPool& pool_;
+  double scale_;                       // working pixels an image pixel
+  double unit_;                        // working pixels a pixel of a 640 pixels wide image
+  int arm_;                            // of gradients, working pixels
+  int width_, height_;                 // of the window, working pixels
+  Pixel margin_{-1, -1};               // the border repeated around it
+  std::vector<Pixel> synapses_;        // neurons x kSynapses
+  std::vector<int> plane_of_;          // the same
+  std::vector<std::int32_t> offsets_;  // the same: where each looks in a plane, with its margin
+  // [plane][row][column]: values or, for gradients, whether they rise to the right, and then down.
+  std::vector<std::int32_t> values_;
+  std::vector<std::uint8_t> rising_;
+};
+
+}  // namespace recollect::wnn

@@ -1,0 +1,170 @@
+#include "recollect/wnn/invariant.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/core/random.h"
+#include "recollect/wnn/displaced.h"
+
+namespace recollect::wnn {
+namespace {
+
+// Coloured blobs of all sizes, with grain; the seed makes the place.
+cv::Mat Scene(std::uint64_t seed, int width = 320, int height = 240) {
+  Random random(seed);
+  cv::Mat image(height, width, CV_8UC3, cv::Scalar(100, 110, 120));
+  for (int i = 0; i < 150; ++i) {
+    const cv::Point centre(static_cast<int>(random.Index(width)),
+                           static_cast<int>(random.Index(height)));
+    const cv::Scalar colour(random.Uniform(30, 190), random.Uniform(30, 190),
+                            random.Uniform(30, 190));
+    cv::circle(image, centre, 2 + static_cast<int>(random.Index(25)), colour, cv::FILLED);
+  }
+  cv::Mat grain(height / 4, width / 4, CV_8UC3);
+  for (int y = 0; y < grain.rows; ++y) {
+    for (int x = 0; x < 3 * grain.cols; ++x) {
+      grain.ptr(y)[x] = static_cast<std::uint8_t>(random.Index(30));
+    }
+  }
+  cv::resize(grain, grain, image.size(), 0, 0, cv::INTER_LINEAR);
+  return image + grain;
+}
+
+ImageView View(const cv::Mat& image) {
+  return {image.data, image.cols, image.rows, image.channels(),
+          static_cast<std::ptrdiff_t>(image.step)};
+}
+
+// Share of bits that differ.
+double Change(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  int bits = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) bits += std::popcount(a[i] ^ b[i]);
+  return bits / (64.0 * static_cast<double>(a.size()));
+}
+
+double ChangeByLight(const NetworkOptions& options) {
+  ThreadPool pool(1);
+  const cv::Mat day = Scene(1);
+  cv::Mat dusk = day.clone();  // darker, and the more so to the right
+  for (int x = 0; x < dusk.cols; ++x) dusk.col(x) *= 0.9 - 0.6 * x / dusk.cols;
+  Encoder encoder(options, day.cols, day.rows, pool);
+  return Change(encoder.Encode(View(day)), encoder.Encode(View(dusk)));
+}
+
+TEST(Invariant, LocalContrastAndGradientsSurviveShadeThatComparesOfPixelsDoNot) {
+  NetworkOptions plain;
+  plain.code = Code::kGray;
+  plain.blur = false;
+  plain.neurons_x = 12;
+  plain.neurons_y = 8;
+  NetworkOptions contrast = plain, gradient = plain;
+  contrast.contrast_sigma = 30;
+  gradient.cells = Cells::kGradient;
+  EXPECT_LT(ChangeByLight(contrast), 0.8 * ChangeByLight(plain));
+  EXPECT_LT(ChangeByLight(gradient), 0.6 * ChangeByLight(plain));
+}
+
+TEST(Invariant, EveryKindOfCellIsAFunctionOfTheImageThatTellsPlacesApart) {
+  ThreadPool pool(2);
+  for (const Cells cells : {Cells::kCompare, Cells::kGradient, Cells::kRank}) {
+    for (const Code code : {Code::kGray, Code::kOpponent}) {
+      NetworkOptions options = RecollectNetwork();
+      options.cells = cells;
+      options.code = code;
+      options.blur = true;
+      options.gaussian_synapses = 64;
+      options.blur_scales = 2;
+      Encoder encoder(options, 320, 240, pool);
+      const cv::Mat one = Scene(1), other = Scene(2);
+      const auto pattern = encoder.Encode(View(one));
+      EXPECT_EQ(pattern, encoder.Encode(View(one)));
+      EXPECT_GT(Change(pattern, encoder.Encode(View(other))), 0.2);
+    }
+  }
+}
+
+TEST(Invariant, RankCellsSetHalfOfTheBits) {
+  ThreadPool pool(1);
+  NetworkOptions options = RecollectNetwork();
+  options.cells = Cells::kRank;
+  options.code = Code::kGray;
+  Encoder encoder(options, 320, 240, pool);
+  const auto pattern = encoder.Encode(View(Scene(3)));
+  int bits = 0;
+  for (const std::uint64_t word : pattern) bits += std::popcount(word);
+  EXPECT_NEAR(bits / (64.0 * static_cast<double>(pattern.size())), 0.48, 0.04);
+}
+
+TEST(Invariant, ADisplacedImageIsFoundUnderItsDisplacement) {
+  ThreadPool pool(2);
+  const NetworkOptions options = RecollectNetwork();
+  Encoder encoder(options, 320, 240, pool);
+  Memory memory(options.neurons());
+  for (std::uint64_t place = 0; place < 20; ++place) {
+    memory.Append(encoder.Encode(View(Scene(place))));
+  }
+  // What was at x is now at x - 16: the live image must be looked at 16 pixels (32 of 640) left.
+  const cv::Mat scene = Scene(7);
+  const cv::Mat motion = (cv::Mat_<double>(2, 3) << 1, 0, -16, 0, 1, 8);
+  cv::Mat live;
+  cv::warpAffine(scene, live, motion, scene.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  const auto patterns = encoder.EncodeDisplaced(View(live));
+  const Displacements grid = encoder.displacements();
+  ASSERT_EQ(grid.columns, 9);
+  ASSERT_EQ(grid.rows, 5);
+  const auto learnt = encoder.Encode(View(scene));
+  std::size_t nearest = 0;
+  for (std::size_t d = 0; d < patterns.size(); ++d) {
+    if (Change(patterns[d], learnt) < Change(patterns[nearest], learnt)) nearest = d;
+  }
+  EXPECT_EQ(nearest % 9, 4u - 2u);
+  EXPECT_EQ(nearest / 9, 2u + 1u);
+
+  const Recollection found = RecollectImage(memory, encoder, View(live), pool);
+  EXPECT_EQ(found.winner, 7);
+  EXPECT_GT(found.confidence, 0.5);
+  EXPECT_EQ(found.neurons_read, options.neurons());
+  NetworkOptions still = options;
+  still.shift_x = still.shift_y = 0;
+  Encoder unmoved(still, 320, 240, pool);
+  EXPECT_LT(RecollectImage(memory, unmoved, View(live), pool).confidence, found.confidence);
+}
+
+TEST(Invariant, VotesUnderFarDisplacementsDoNotAddUp) {
+  const Displacements grid{3, 1, 16};
+  const std::vector<int> labels = {0, 1};
+  // Entry 0 gets five votes, all under the left displacement; entry 1 six, three at either end.
+  std::vector<std::vector<Answer>> answers(3, std::vector<Answer>(11, MakeAnswer(60, 0, 0)));
+  for (std::size_t n = 0; n < 11; ++n) {
+    if (n < 5) {
+      answers[0][n] = MakeAnswer(5, 0, 0);
+    } else {
+      answers[n < 8 ? 0 : 2][n] = MakeAnswer(5, 0, 1);
+    }
+  }
+  const Recollection merged = MergeDisplaced(labels, answers, grid);
+  EXPECT_EQ(merged.winner, 0);
+  EXPECT_EQ(merged.histogram[0].votes, 5);
+  EXPECT_EQ(merged.histogram[1].votes, 3);
+  EXPECT_NEAR(merged.confidence, 0.4, 1e-12);
+}
+
+TEST(Invariant, TheReferenceIsUntouchedAndBadOptionsAreRefused) {
+  EXPECT_FALSE(InvariantEncoder::Wanted({}));
+  EXPECT_TRUE(InvariantEncoder::Wanted(RecollectNetwork()));
+  EXPECT_EQ(DisplacementsOf({}).count(), 1);
+  NetworkOptions options = RecollectNetwork();
+  options.shift_step = 0;
+  EXPECT_THROW(DisplacementsOf(options), Error);
+  options = RecollectNetwork();
+  options.contrast_sigma = -1;
+  EXPECT_THROW(Synapses(options, 160, 120), Error);
+}
+
+}  // namespace
+}  // namespace recollect::wnn
