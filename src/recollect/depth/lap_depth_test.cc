@@ -1,6 +1,7 @@
 #include "recollect/depth/lap_depth.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -58,7 +59,8 @@ class LapDepth : public ::testing::Test {
     return "";
   }
 
-  fs::path folder_ = fs::temp_directory_path() / "recollect_lap_depth";
+  fs::path folder_ =
+      fs::temp_directory_path() / fmt::format("recollect_lap_depth_{}", static_cast<int>(getpid()));
   MatchOptions options_;
 };
 
