@@ -17,6 +17,7 @@ namespace {
 // Blocks written between two commits of a map under construction: bounds memory, not safety.
 constexpr int kBlocksPerCommit = 16;
 constexpr int kJpegQuality = 95;
+constexpr std::size_t kFramesAhead = 16;  // whose geometry is made at a time
 
 // A lap's frames that become key frames.
 struct Selection {
@@ -113,8 +114,8 @@ class PatternAppender {
 
 // Writes the selected frames behind the key frames that are there, and the new description.
 void Append(StoreWriter& writer, const std::string& where, MapDescription description,
-            const std::vector<Selection>& selections, bool commit_as_it_goes, ThreadPool& pool,
-            const ProgressSink& progress) {
+            const std::vector<Selection>& selections, const GeometrySource& geometry,
+            bool commit_as_it_goes, ThreadPool& pool, const ProgressSink& progress) {
   const PinholeCamera& camera = description.camera.left;
   wnn::Encoder encoder(description.network, camera.width, camera.height, pool);
   std::vector<std::uint64_t> pattern(encoder.pattern_words());
@@ -129,7 +130,18 @@ void Append(StoreWriter& writer, const std::string& where, MapDescription descri
   for (const Selection& selection : selections) {
     const Lap& lap = *selection.lap;
     const auto lap_number = static_cast<std::uint32_t>(description.laps.size());
-    for (const std::size_t frame : selection.frames) {
+    std::vector<std::vector<std::byte>> shapes;  // geometry of the frames from `ahead` on
+    std::size_t ahead = 0;
+    for (std::size_t i = 0; i < selection.frames.size(); ++i) {
+      const std::size_t frame = selection.frames[i];
+      if (geometry && i == ahead + shapes.size()) {
+        ahead = i;
+        shapes.assign(std::min(kFramesAhead, selection.frames.size() - i), {});
+        pool.For(static_cast<std::int64_t>(shapes.size()), 1, [&](std::int64_t from, std::int64_t) {
+          const auto at = static_cast<std::size_t>(from);
+          shapes[at] = geometry(lap, selection.frames[ahead + at]);
+        });
+      }
       const cv::Mat image = ReadColour(lap.frames[frame].left);
       encoder.Encode(
           {image.data, image.cols, image.rows, 3, static_cast<std::ptrdiff_t>(image.step)},
@@ -138,6 +150,7 @@ void Append(StoreWriter& writer, const std::string& where, MapDescription descri
                                               lap_number, static_cast<std::uint32_t>(frame)});
       writer.Put(Table::kKeyFrames, key, std::as_bytes(std::span(&record, 1)));
       writer.Put(Table::kImages, key, EncodeImage(lap.frames[frame].left, image));
+      if (geometry) writer.Put(Table::kGeometry, key, shapes[i - ahead]);
       ++key;
       const bool filled = patterns.Append(pattern);
       if (filled && commit_as_it_goes && ++blocks % kBlocksPerCommit == 0) writer.Commit();
@@ -168,18 +181,30 @@ void CreateMap(const std::filesystem::path& file, std::span<const Lap> laps,
   description.network = options.network;
   const std::vector<Selection> selections = Select(laps, description);
   CreateStore(file, [&](StoreWriter& writer) {
-    Append(writer, file.string(), description, selections, /*commit_as_it_goes=*/true, pool,
-           progress);
+    Append(writer, file.string(), description, selections, options.geometry,
+           /*commit_as_it_goes=*/true, pool, progress);
   });
 }
 
 void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, ThreadPool& pool,
-              const ProgressSink& progress) {
+              const ProgressSink& progress, const GeometrySource& geometry) {
   StoreWriter writer(file, /*create=*/false);
   const MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
   const std::vector<Selection> selections = Select(laps, description);
-  Append(writer, file.string(), description, selections, /*commit_as_it_goes=*/false, pool,
-         progress);
+  const bool has_geometry = writer.Get(Table::kGeometry, 0).has_value();
+  Require(!has_geometry || geometry, file.string(),
+          "its key frames have geometry, new ones have not", "say how geometry is made");
+  Append(writer, file.string(), description, selections, has_geometry ? geometry : GeometrySource{},
+         /*commit_as_it_goes=*/false, pool, progress);
+  writer.Commit();
+}
+
+void SetGeometryInflation(const std::filesystem::path& file, double inflation) {
+  StoreWriter writer(file, /*create=*/false);
+  MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
+  description.geometry_inflation = inflation;
+  const std::string json = ToJson(description);
+  writer.Put(kDescriptionKey, std::as_bytes(std::span(json)));
   writer.Commit();
 }
 

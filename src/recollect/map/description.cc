@@ -97,21 +97,22 @@ std::string ToJson(const MapDescription& d) {
     laps.push_back({{"name", lap.name}, {"key_frames", lap.key_frames}});
   }
   const PinholeCamera& c = d.camera.left;
-  const json description = {{"format", "recollect map"},
-                            {"version", kVersion},
-                            {"camera",
-                             {{"width", c.width},
-                              {"height", c.height},
-                              {"fx", c.fx},
-                              {"fy", c.fy},
-                              {"cx", c.cx},
-                              {"cy", c.cy},
-                              {"baseline_m", d.camera.baseline}}},
-                            {"body_from_camera", PoseToJson(d.body_from_camera)},
-                            {"world_up", {d.world_up.x(), d.world_up.y(), d.world_up.z()}},
-                            {"spacing_m", d.spacing_m},
-                            {"wnn", NetworkToJson(d.network)},
-                            {"laps", laps}};
+  json description = {{"format", "recollect map"},
+                      {"version", kVersion},
+                      {"camera",
+                       {{"width", c.width},
+                        {"height", c.height},
+                        {"fx", c.fx},
+                        {"fy", c.fy},
+                        {"cx", c.cx},
+                        {"cy", c.cy},
+                        {"baseline_m", d.camera.baseline}}},
+                      {"body_from_camera", PoseToJson(d.body_from_camera)},
+                      {"world_up", {d.world_up.x(), d.world_up.y(), d.world_up.z()}},
+                      {"spacing_m", d.spacing_m},
+                      {"wnn", NetworkToJson(d.network)},
+                      {"laps", laps}};
+  if (d.geometry_inflation > 0) description["geometry_inflation"] = d.geometry_inflation;
   return description.dump();
 }
 
@@ -137,6 +138,7 @@ MapDescription ParseMapDescription(const std::string& text, const std::string& w
     for (int i = 0; i < 3; ++i) d.world_up[i] = up.at(static_cast<std::size_t>(i)).get<double>();
     j.at("spacing_m").get_to(d.spacing_m);
     d.network = NetworkFromJson(j.at("wnn"));
+    d.geometry_inflation = j.value("geometry_inflation", 0.0);
     for (const json& lap : j.at("laps")) {
       d.laps.push_back({lap.at("name").get<std::string>(), lap.at("key_frames").get<int>()});
     }

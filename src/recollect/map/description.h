@@ -23,6 +23,9 @@ struct MapDescription {
   Eigen::Vector3d world_up = Eigen::Vector3d::Zero();  // zero: the data set does not say
   double spacing_m = 5;
   wnn::NetworkOptions network;
+  // Standard deviations of poses found by geometry are so many times those of their model,
+  // measured on the mapped laps themselves; 0 where that has not been done.
+  double geometry_inflation = 0;
   std::vector<MapLap> laps;
 
   int KeyFrames() const;

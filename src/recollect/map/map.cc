@@ -46,6 +46,10 @@ KeyFrame Map::At(int key) const {
   return FromRecord(record);
 }
 
+std::optional<Bytes> Map::Geometry(int key) const {
+  return store_.Get(Table::kGeometry, static_cast<std::uint32_t>(key));
+}
+
 cv::Mat Map::Image(int key) const {
   const std::string where = store_.file().string();
   Require(key >= 0 && key < size(), where,

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +43,10 @@ class Map {
   KeyFrame At(int key) const;
   // The mapped image, 8-bit B, G, R, of the size of description().camera.
   cv::Mat Image(int key) const;
+  // What was put beside the key frame to find poses by geometry, as it was given; nothing where the
+  // map has none. Valid as long as the map.
+  std::optional<Bytes> Geometry(int key) const;
+  bool HasGeometry() const { return store_.Count(Table::kGeometry) > 0; }
   // Patterns of all key frames (labels are key frame numbers). Valid as long as the map.
   const wnn::Memory& memory() const { return memory_; }
 
@@ -52,10 +58,15 @@ class Map {
   wnn::Memory memory_;
 };
 
+// Makes what Map::Geometry gives back, of a lap's frame; empty for none. Called from several
+// threads.
+using GeometrySource = std::function<std::vector<std::byte>(const Lap& lap, std::size_t frame)>;
+
 struct MapOptions {
   double spacing_m = 5;  // between key frames of a lap; 10 degrees of turn also make one
   // The weightless network; fixed for the life of the map.
   wnn::NetworkOptions network = wnn::RecollectNetwork();
+  GeometrySource geometry;  // none: a map without geometry
 };
 
 // Makes a map of key frames sampled from `laps`, which must have images of one size and poses in
@@ -66,8 +77,12 @@ void CreateMap(const std::filesystem::path& file, std::span<const Lap> laps,
 
 // Appends the key frames of further laps, sampled as the map's others, in one transaction: all of
 // them or, on any Error, none. What is there is neither moved nor rewritten, but for the last,
-// partly filled block of patterns.
+// partly filled block of patterns. geometry: used where the map has some, which then needs it.
 void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, ThreadPool& pool,
-              const ProgressSink& progress = {});
+              const ProgressSink& progress = {}, const GeometrySource& geometry = {});
+
+// How much larger than its model says the error of a pose found by geometry is; see
+// MapDescription::geometry_inflation.
+void SetGeometryInflation(const std::filesystem::path& file, double inflation);
 
 }  // namespace recollect

@@ -130,6 +130,35 @@ TEST_F(MapTest, GrowsByAppending) {
   ExpectHolds(before, {laps[0]});  // an open reader keeps its own state
 }
 
+TEST_F(MapTest, KeepsGeometryBesideItsKeyFramesWhereThereIsSome) {
+  const fs::path plain = folder_ / "plain.map", shaped = folder_ / "shaped.map";
+  const std::vector<Lap> first = {MakeLap("a", 20)}, second = {MakeLap("b", 3)};
+  const GeometrySource source = [](const Lap& lap, std::size_t frame) {
+    return std::vector<std::byte>(frame + 1, static_cast<std::byte>(lap.name[0]));
+  };
+  CreateMap(plain, first, options_, pool_);
+  AddToMap(plain, second, pool_, {}, source);  // a map without geometry stays one
+  EXPECT_FALSE(Map::Open(plain).HasGeometry());
+  EXPECT_FALSE(Map::Open(plain).Geometry(0));
+
+  options_.geometry = source;
+  CreateMap(shaped, first, options_, pool_);
+  EXPECT_THROW(AddToMap(shaped, second, pool_), Error);
+  EXPECT_EQ(Map::Open(shaped).size(), 20);
+  AddToMap(shaped, second, pool_, {}, source);
+  SetGeometryInflation(shaped, 1.5);
+  const Map map = Map::Open(shaped);
+  ASSERT_EQ(map.size(), 23);
+  EXPECT_TRUE(map.HasGeometry());
+  EXPECT_EQ(map.description().geometry_inflation, 1.5);
+  for (const int key : {0, 15, 16, 19}) {
+    EXPECT_EQ(map.Geometry(key)->size(), static_cast<std::size_t>(key + 1));
+    EXPECT_EQ(map.Geometry(key)->front(), std::byte{'a'});
+  }
+  EXPECT_EQ(map.Geometry(22)->size(), 3u);
+  EXPECT_EQ(map.Geometry(22)->front(), std::byte{'b'});
+}
+
 TEST_F(MapTest, RefusesBadLapsAndLeavesTheMapAlone) {
   const std::vector<Lap> laps = {MakeLap("one", 3)};
   const fs::path file = folder_ / "m.map";

@@ -14,7 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 4> kTableNames = {"meta", "keyframes", "images", "patterns"};
+constexpr std::array<const char*, 5> kTableNames = {"meta", "keyframes", "images", "patterns",
+                                                    "geometry"};
+constexpr std::size_t kOptionalFrom = 4;  // tables that older maps have not
 // Address space, not memory or disk: room for about two million key frames.
 constexpr std::size_t kAddressSpace = std::size_t{256} << 30;
 
@@ -46,6 +48,7 @@ struct Session {
   MDB_env* env = nullptr;
   MDB_txn* txn = nullptr;
   std::array<MDB_dbi, kTableNames.size()> tables{};
+  std::array<bool, kTableNames.size()> missing{};
 
   Session(const fs::path& opened, const fs::path& shown, bool writing, bool create)
       : path(opened), file(shown) {
@@ -83,9 +86,12 @@ struct Session {
     CheckWhole();
     Begin(writing);
     for (std::size_t i = 0; i < tables.size(); ++i) {
+      const bool optional = i >= kOptionalFrom;
       const unsigned kind = i == 0 ? 0u : MDB_INTEGERKEY;
-      Check(mdb_dbi_open(txn, kTableNames[i], kind | (create ? MDB_CREATE : 0u), &tables[i]), file,
-            "opening");
+      const unsigned make = create || (optional && writing) ? MDB_CREATE : 0u;
+      const int code_of_table = mdb_dbi_open(txn, kTableNames[i], kind | make, &tables[i]);
+      missing[i] = optional && code_of_table == MDB_NOTFOUND;
+      if (!missing[i]) Check(code_of_table, file, "opening");
     }
   }
 
@@ -111,6 +117,7 @@ struct Session {
   }
 
   MDB_dbi Handle(Table table) const { return tables[static_cast<std::size_t>(table)]; }
+  bool Has(Table table) const { return !missing[static_cast<std::size_t>(table)]; }
 };
 
 }  // namespace
@@ -126,6 +133,7 @@ StoreReader::StoreReader(StoreReader&&) noexcept = default;
 StoreReader& StoreReader::operator=(StoreReader&&) noexcept = default;
 
 std::optional<Bytes> StoreReader::Get(Table table, std::uint32_t key) const {
+  if (!state_->Has(table)) return std::nullopt;
   return Find(state_->txn, state_->Handle(table), AsBytes(key), state_->file);
 }
 
@@ -134,6 +142,7 @@ std::optional<Bytes> StoreReader::Get(const std::string& meta_key) const {
 }
 
 std::size_t StoreReader::Count(Table table) const {
+  if (!state_->Has(table)) return 0;
   MDB_stat stat;
   Check(mdb_stat(state_->txn, state_->Handle(table), &stat), state_->file, "reading");
   return stat.ms_entries;

@@ -12,8 +12,9 @@ namespace recollect {
 
 using Bytes = std::span<const std::byte>;
 
-// The four tables of a map file. Numbers are the keys of all but kMeta.
-enum class Table { kMeta, kKeyFrames, kImages, kPatterns };
+// The tables of a map file. Numbers are the keys of all but kMeta. kGeometry may be missing: then
+// it reads as empty.
+enum class Table { kMeta, kKeyFrames, kImages, kPatterns, kGeometry };
 
 // A map's file: one LMDB environment, read in place through the memory map. Readers see one
 // consistent state, the one at opening, whatever writers do meanwhile. Throws Error, naming the

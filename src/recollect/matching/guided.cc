@@ -1,0 +1,92 @@
+#include "recollect/matching/guided.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recollect/matching/build_landmarks.h"
+#include "recollect/matching/match.h"
+
+namespace recollect::matching {
+
+PixelGrid::PixelGrid(const PinholeCamera& camera, const Features& features)
+    : columns_(camera.width / kCell + 1), rows_(camera.height / kCell + 1) {
+  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+  for (int i = 0; i < features.size(); ++i) {
+    const Eigen::Vector2d& p = features.pixels[static_cast<std::size_t>(i)];
+    const int x = std::clamp(static_cast<int>(p.x() / kCell), 0, columns_ - 1);
+    const int y = std::clamp(static_cast<int>(p.y() / kCell), 0, rows_ - 1);
+    cells_[static_cast<std::size_t>(y * columns_ + x)].push_back(i);
+  }
+}
+
+void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
+                 const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
+                 const SE3& pose, double radius, double likeness, GuidedMatches& matches) {
+  const SE3 live_from_key = pose.Inverse() * world_from_keyframe;
+  // By feature: the most alike landmark so far.
+  std::vector<std::pair<int, int>> best(static_cast<std::size_t>(live.size()), {-1, -1});
+  for (int i = 0; i < landmarks.size(); ++i) {
+    const Eigen::Vector3d p =
+        live_from_key * landmarks.points[static_cast<std::size_t>(i)].p_keyframe;
+    if (p.z() < 0.5) continue;
+    const Eigen::Vector2d predicted = camera.Project(p);
+    if (!camera.Contains(predicted)) continue;
+    const std::int8_t* descriptor = landmarks.descriptors.data() + i * kDescriptorBytes;
+    const int own_norm = Likeness(descriptor, descriptor);
+    int feature = -1, most = -1;
+    grid.Around(predicted, radius, [&](int j) {
+      if ((live.pixels[static_cast<std::size_t>(j)] - predicted).norm() > radius) return;
+      const int like = Likeness(descriptor, live.Descriptor(j));
+      if (like > most) {
+        most = like;
+        feature = j;
+      }
+    });
+    if (feature < 0) continue;
+    const int its_norm = Likeness(live.Descriptor(feature), live.Descriptor(feature));
+    if (most < likeness * std::sqrt(static_cast<double>(own_norm) * its_norm)) continue;
+    auto& [landmark, so_far] = best[static_cast<std::size_t>(feature)];
+    if (most > so_far) {
+      so_far = most;
+      landmark = i;
+    }
+  }
+  const Eigen::Matrix3d& r = world_from_keyframe.rotation();
+  for (int j = 0; j < live.size(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    if (best[at].first < 0) continue;
+    const Landmark& l = landmarks.points[static_cast<std::size_t>(best[at].first)];
+    matches.observations.push_back({world_from_keyframe * l.p_keyframe,
+                                    r * l.Covariance(camera) * r.transpose(), live.pixels[at],
+                                    PixelSigma(static_cast<double>(live.sizes[at]))});
+    matches.features.push_back(j);
+  }
+}
+
+void ShareFeatures(const Features& live, GuidedMatches& matches) {
+  std::vector<int> sharers(static_cast<std::size_t>(live.size()), 0);
+  for (const int feature : matches.features) ++sharers[static_cast<std::size_t>(feature)];
+  for (std::size_t i = 0; i < matches.features.size(); ++i) {
+    matches.observations[i].pixel_sigma *=
+        std::sqrt(sharers[static_cast<std::size_t>(matches.features[i])]);
+  }
+}
+
+void CountSupport(const PinholeCamera& camera, const Features& live, const GuidedMatches& matches,
+                  const std::vector<double>& deviations, int& support, double& spread) {
+  constexpr int kColumns = 8, kRows = 6;
+  std::vector<char> seen(static_cast<std::size_t>(live.size()), 0), cells(kColumns * kRows, 0);
+  for (std::size_t i = 0; i < matches.features.size(); ++i) {
+    if (deviations[i] > 3) continue;
+    const auto feature = static_cast<std::size_t>(matches.features[i]);
+    seen[feature] = 1;
+    const Eigen::Vector2d& p = live.pixels[feature];
+    const int x = std::clamp(static_cast<int>(p.x() * kColumns / camera.width), 0, kColumns - 1);
+    const int y = std::clamp(static_cast<int>(p.y() * kRows / camera.height), 0, kRows - 1);
+    cells[static_cast<std::size_t>(y * kColumns + x)] = 1;
+  }
+  support = static_cast<int>(std::count(seen.begin(), seen.end(), 1));
+  spread = static_cast<double>(std::count(cells.begin(), cells.end(), 1)) / (kColumns * kRows);
+}
+
+}  // namespace recollect::matching

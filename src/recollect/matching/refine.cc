@@ -1,0 +1,105 @@
+#include "recollect/matching/refine.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+namespace recollect::matching {
+namespace {
+
+constexpr double kNearest = 0.1;  // metres before the camera; nearer points say nothing
+
+// d projection / d p_camera.
+Eigen::Matrix<double, 2, 3> ProjectionJacobian(const PinholeCamera& camera,
+                                               const Eigen::Vector3d& p) {
+  const double iz = 1 / p.z();
+  Eigen::Matrix<double, 2, 3> j;
+  j << camera.fx * iz, 0, -camera.fx * p.x() * iz * iz, 0, camera.fy * iz,
+      -camera.fy * p.y() * iz * iz;
+  return j;
+}
+
+// Inverse covariance of the residual: the pixel's and the point's, seen from the live camera.
+Eigen::Matrix2d Information(const Observation& o, const PinholeCamera& camera,
+                            const SE3& world_from_camera, const Eigen::Vector3d& p) {
+  const Eigen::Matrix<double, 2, 3> j =
+      ProjectionJacobian(camera, p) * world_from_camera.rotation().transpose();
+  const Eigen::Matrix2d covariance = j * o.covariance_world * j.transpose() +
+                                     o.pixel_sigma * o.pixel_sigma * Eigen::Matrix2d::Identity();
+  return covariance.inverse();
+}
+
+struct NormalEquations {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+NormalEquations Linearise(std::span<const Observation> observations, const PinholeCamera& camera,
+                          const SE3& pose, const RefineOptions& options,
+                          std::vector<double>& deviations) {
+  NormalEquations sum;
+  const SE3 camera_from_world = pose.Inverse();
+  deviations.clear();
+  for (const Observation& o : observations) {
+    const Eigen::Vector3d p = camera_from_world * o.p_world;
+    if (p.z() < kNearest) {
+      deviations.push_back(std::numeric_limits<double>::infinity());
+      continue;
+    }
+    Eigen::Matrix<double, 2, 6> jacobian;
+    const Eigen::Vector2d r = Residual(o, camera, pose, &jacobian);
+    const Eigen::Matrix2d information = Information(o, camera, pose, p);
+    const double squared = r.dot(information * r);
+    deviations.push_back(std::sqrt(squared));
+    const double weight = 1 / (1 + squared / (options.robust_scale * options.robust_scale));
+    sum.hessian += weight * jacobian.transpose() * information * jacobian;
+    sum.gradient += weight * jacobian.transpose() * information * r;
+  }
+  return sum;
+}
+
+void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
+  // Near the mean Log(mean^-1 pose Exp(xi)) = Log(mean^-1 pose) + xi to first order.
+  const Vector6d off = (prior.world_from_camera.Inverse() * pose).Log();
+  const Matrix6d information = prior.covariance.inverse();
+  sum.hessian += information;
+  sum.gradient += information * off;
+}
+
+}  // namespace
+
+Eigen::Vector2d Residual(const Observation& o, const PinholeCamera& camera,
+                         const SE3& world_from_camera, Eigen::Matrix<double, 2, 6>* jacobian) {
+  const Eigen::Vector3d p = world_from_camera.Inverse() * o.p_world;
+  if (jacobian != nullptr) {
+    // (T Exp(xi))^-1 p_world = Exp(-xi) p = p - rotation x p - translation to first order.
+    Eigen::Matrix<double, 3, 6> moved;
+    moved << Hat(p), -Eigen::Matrix3d::Identity();
+    *jacobian = ProjectionJacobian(camera, p) * moved;
+  }
+  return camera.Project(p) - o.pixel;
+}
+
+std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
+                                      const PinholeCamera& camera, const SE3& start,
+                                      const RefineOptions& options,
+                                      const std::optional<PosePrior>& prior) {
+  RefinedPose result{start, {}, {}, false};
+  for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
+    NormalEquations sum =
+        Linearise(observations, camera, result.world_from_camera, options, result.deviations);
+    if (prior) AddPrior(*prior, result.world_from_camera, sum);
+    const Eigen::LDLT<Matrix6d> ldlt(sum.hessian);
+    if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-12)) return std::nullopt;
+    result.covariance = ldlt.solve(Matrix6d::Identity());
+    if (result.converged || iteration == options.max_iterations) break;
+    const Vector6d step = -ldlt.solve(sum.gradient);
+    if (!step.allFinite()) return std::nullopt;
+    result.world_from_camera = result.world_from_camera * SE3::Exp(step);
+    result.converged = step.head<3>().norm() < 1e-6 && step.tail<3>().norm() < 1e-5;
+  }
+  return result;
+}
+
+}  // namespace recollect::matching
