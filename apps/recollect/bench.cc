@@ -7,7 +7,11 @@
 #include "command.h"
 #include "commands.h"
 #include "laps.h"
+#include "localizer_flags.h"
+#include "recollect/benchmark/pipeline_bench.h"
 #include "recollect/benchmark/search_bench.h"
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
 #include "wnn_flags.h"
 
 namespace recollect::app {
@@ -32,6 +36,36 @@ void RunSearch(BenchFlags flags) {
   const nlohmann::json figures = RunSearchBench(options, TerminalProgress());
   fmt::print("{}", DescribeSearchBench(figures));
   WriteFigures(flags.common, figures);
+}
+
+struct PipelineFlags {
+  Common common;
+  LapFlags laps;
+  LocalizerFlags localizer;
+  PipelineBenchOptions options;
+};
+
+void RunPipeline(const PipelineFlags& flags) {
+  const std::vector<Lap> laps = flags.laps.Read();
+  Require(laps.size() == 1, "--lap", fmt::format("{} laps where one is localised", laps.size()));
+  ThreadPool pool(flags.common.threads);
+  const Map map = Map::Open(flags.localizer.map);
+  Localizer localizer(map, flags.localizer.Network(flags.common.threads), pool,
+                      flags.localizer.Options());
+  const nlohmann::json figures = RunPipelineBench(localizer, laps.front(), flags.options);
+  fmt::print("{}", DescribePipelineBench(figures));
+  WriteFigures(flags.common, figures);
+}
+
+void AddPipeline(CLI::App& bench) {
+  const auto flags = std::make_shared<PipelineFlags>();
+  CLI::App* command = AddCommand(bench, "pipeline", "Every step from an image file to its pose",
+                                 flags->common, [flags] { RunPipeline(*flags); });
+  flags->localizer.AddTo(*command);
+  flags->laps.AddTo(*command);
+  command->add_option("--images", flags->options.images, "so many, evenly spread over the lap")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -71,6 +105,7 @@ void AddBench(CLI::App& app) {
   search->add_flag("--fatfast,!--no-fatfast", options.fat_fast, "measure Fat-Fast VG-RAM, too");
   search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");
   AddWnnFlags(*search, options.corpus.network);
+  AddPipeline(*bench);
 }
 
 }  // namespace recollect::app

@@ -7,6 +7,7 @@
 #include "command.h"
 #include "commands.h"
 #include "laps.h"
+#include "localizer_flags.h"
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/evaluation/report.h"
@@ -16,7 +17,8 @@ namespace {
 
 struct Options {
   Common common;
-  std::filesystem::path map, model, out;
+  LocalizerFlags localizer;
+  std::filesystem::path out;
   LapFlags laps;
   EvaluationOptions evaluation;
 };
@@ -25,8 +27,9 @@ void Run(const Options& options) {
   const std::vector<Lap> laps = options.laps.Read();
   Require(laps.size() == 1, "--lap", fmt::format("{} laps where one is judged", laps.size()));
   ThreadPool pool(options.common.threads);
-  const Map map = Map::Open(options.map);
-  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
+  const Map map = Map::Open(options.localizer.map);
+  Localizer localizer(map, options.localizer.Network(options.common.threads), pool,
+                      options.localizer.Options());
   const Evaluation evaluation =
       Evaluate(localizer, laps.front(), options.evaluation, TerminalProgress());
   fmt::print("{}", FormatTable(evaluation));
@@ -41,13 +44,19 @@ void AddEvaluate(CLI::App& app) {
   CLI::App* command =
       AddCommand(app, "evaluate", "Localise a lap and judge the answers beside their baselines",
                  options->common, [options] { Run(*options); });
-  command->add_option("--map", options->map, "the map")->required()->type_name("MAP");
-  command->add_option("--model", options->model, "the relative-pose network")
-      ->required()
-      ->type_name("MODEL");
+  options->localizer.AddTo(*command);
   options->laps.AddTo(*command);
   command->add_option("--spacing", options->evaluation.spacing_m, "metres between live images")
       ->capture_default_str();
+  command
+      ->add_option("--leave-out", options->evaluation.leave_out,
+                   "of a lap that is in the map: nothing, its key frames, or also the frames\n"
+                   "that their landmarks were made of (none, key-frames, sources)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, LeaveOut>{{"none", LeaveOut::kNone},
+                                          {"key-frames", LeaveOut::kKeyFrames},
+                                          {"sources", LeaveOut::kSources}}))
+      ->default_str("none");
   command
       ->add_option("--out", options->out,
                    "folder for the picture, the table, the figures and the trajectories")

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <memory>
 
 #include "command.h"
 #include "commands.h"
 #include "laps.h"
+#include "localizer_flags.h"
 #include "recollect/core/error.h"
+#include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
 #include "recollect/dataset/image.h"
 #include "recollect/dataset/trajectory_io.h"
@@ -16,7 +19,8 @@ namespace {
 
 struct Options {
   Common common;
-  std::filesystem::path map, model, out, kitti;
+  LocalizerFlags localizer;
+  std::filesystem::path out, kitti, csv;
   std::vector<std::filesystem::path> images;
   LapFlags laps;
 };
@@ -52,41 +56,83 @@ void CheckImages(const std::vector<Live>& live, const PinholeCamera& camera) {
   }
 }
 
+nlohmann::json ToFigures(const Live& one, const Localization& answer) {
+  const Eigen::Vector3d p = answer.world_from_camera.translation();
+  nlohmann::json covariance = nlohmann::json::array();
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      covariance.push_back(answer.covariance(row, column));
+    }
+  }
+  return {{"image", one.image.string()},
+          {"position_m", {p.x(), p.y(), p.z()}},
+          {"key_frame", answer.key_frame},
+          {"place", answer.place},
+          {"confidence", answer.confidence},
+          {"state", Name(answer.state)},
+          {"carried_by", Name(answer.carried_by)},
+          {"support", answer.support},
+          {"spread", answer.spread},
+          {"covariance", covariance},
+          {"ms",
+           {{"recollect", answer.ms.recollect},
+            {"key_frame", answer.ms.key_frame},
+            {"relate", answer.ms.relate},
+            {"features", answer.ms.features},
+            {"verify", answer.ms.verify},
+            {"total", answer.ms.total}}}};
+}
+
+constexpr const char* kCsvHead =
+    "image,time,x,y,z,qx,qy,qz,qw,key_frame,place,confidence,state,carried_by,support,spread,"
+    "sigma_x,sigma_y,sigma_z\n";
+
+// Standard deviations are those of the position in the camera's axes.
+std::string ToCsv(const Live& one, const Localization& a) {
+  const Eigen::Vector3d p = a.world_from_camera.translation();
+  const Eigen::Quaterniond q(a.world_from_camera.rotation());
+  const Eigen::Vector3d sigma = a.covariance.diagonal().tail<3>().cwiseSqrt();
+  return fmt::format(
+      "{},{:.6f},{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{},{},{:.4f},{},{},{},{:.3f},"
+      "{:.4f},{:.4f},{:.4f}\n",
+      one.image.string(), one.time, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), a.key_frame,
+      a.place, a.confidence, Name(a.state), Name(a.carried_by), a.support, a.spread, sigma.x(),
+      sigma.y(), sigma.z());
+}
+
 void Run(const Options& options) {
   const std::vector<Live> live = Gather(options);
   ThreadPool pool(options.common.threads);
-  const Map map = Map::Open(options.map);
+  const Map map = Map::Open(options.localizer.map);
   CheckImages(live, map.description().camera.left);
-  Localizer localizer(map, cnn::PoseNetwork::Load(options.model, options.common.threads), pool);
+  Localizer localizer(map, options.localizer.Network(options.common.threads), pool,
+                      options.localizer.Options());
   const ProgressSink progress = TerminalProgress();
 
   std::vector<StampedPose> stamped;
   std::vector<SE3> poses;
   nlohmann::json figures = nlohmann::json::array();
+  std::string csv = kCsvHead;
   for (const Live& one : live) {
     const Localization answer = localizer.Localize(ReadColour(one.image), one.image.string());
     stamped.push_back({one.time, answer.world_from_camera});
     poses.push_back(answer.world_from_camera);
     const Eigen::Vector3d p = answer.world_from_camera.translation();
     if (options.out.empty() && options.kitti.empty()) {
-      fmt::print("{}: x {:.3f} y {:.3f} z {:.3f} m, key frame {}, confidence {:.2f}, {:.0f} ms\n",
-                 one.image.string(), p.x(), p.y(), p.z(), answer.key_frame, answer.confidence,
-                 answer.ms.total);
+      fmt::print(
+          "{}: x {:.3f} y {:.3f} z {:.3f} m, {} ({}, {} features), key frame {}, confidence "
+          "{:.2f}, {:.0f} ms\n",
+          one.image.string(), p.x(), p.y(), p.z(), Name(answer.state), Name(answer.carried_by),
+          answer.support, answer.place, answer.confidence, answer.ms.total);
     }
-    figures.push_back({{"image", one.image.string()},
-                       {"position_m", {p.x(), p.y(), p.z()}},
-                       {"key_frame", answer.key_frame},
-                       {"confidence", answer.confidence},
-                       {"ms",
-                        {{"recollect", answer.ms.recollect},
-                         {"key_frame", answer.ms.key_frame},
-                         {"relate", answer.ms.relate},
-                         {"total", answer.ms.total}}}});
+    figures.push_back(ToFigures(one, answer));
+    csv += ToCsv(one, answer);
     Report(progress, "localise", static_cast<std::int64_t>(poses.size()),
            static_cast<std::int64_t>(live.size()));
   }
   if (!options.out.empty()) WriteTumTrajectory(options.out, stamped);
   if (!options.kitti.empty()) WriteKittiPoses(options.kitti, poses);
+  if (!options.csv.empty()) AtomicWrite(options.csv, csv);
   WriteFigures(options.common, {{"frames", figures}});
 }
 
@@ -99,11 +145,12 @@ void AddLocalize(CLI::App& app) {
                  options->common, [options] { Run(*options); });
   command->add_option("images", options->images, "images to localise")->type_name("IMAGE");
   options->laps.AddTo(*command, /*required=*/false);
-  command->add_option("--map", options->map, "the map")->required()->type_name("MAP");
-  command->add_option("--model", options->model, "the relative-pose network")
-      ->required()
-      ->type_name("MODEL");
+  options->localizer.AddTo(*command);
   command->add_option("--out", options->out, "write the poses here, as a TUM trajectory")
+      ->type_name("FILE");
+  command
+      ->add_option("--csv", options->csv,
+                   "write the poses here with state, support and standard deviations")
       ->type_name("FILE");
   command->add_option("--kitti", options->kitti, "write the poses here, as a KITTI trajectory")
       ->type_name("FILE");

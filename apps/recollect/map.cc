@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "laps.h"
 #include "recollect/core/parallel.h"
+#include "recollect/matching/mapped.h"
 #include "wnn_flags.h"
 
 namespace recollect::app {
@@ -18,6 +19,7 @@ struct Options {
   std::filesystem::path map;
   LapFlags laps;
   MapOptions create;
+  bool geometry = true;
 };
 
 nlohmann::json Describe(const Options& options) {
@@ -27,6 +29,13 @@ nlohmann::json Describe(const Options& options) {
   for (const MapLap& lap : d.laps) {
     laps.push_back({{"name", lap.name}, {"key_frames", lap.key_frames}});
   }
+  std::size_t bytes = 0, with_landmarks = 0;
+  for (int key = 0; key < map.size(); ++key) {
+    const auto geometry = map.Geometry(key);
+    if (!geometry) continue;
+    bytes += geometry->size();
+    ++with_landmarks;
+  }
   return {{"file", options.map.string()},
           {"bytes", map.FileBytes()},
           {"key_frames", map.size()},
@@ -34,6 +43,10 @@ nlohmann::json Describe(const Options& options) {
           {"spacing_m", d.spacing_m},
           {"image", {{"width", d.camera.left.width}, {"height", d.camera.left.height}}},
           {"neurons", d.network.neurons()},
+          {"geometry",
+           {{"key_frames", with_landmarks},
+            {"bytes_a_key_frame", with_landmarks > 0 ? bytes / with_landmarks : 0},
+            {"inflation", d.geometry_inflation}}},
           {"seed", d.network.seed}};
 }
 
@@ -44,6 +57,12 @@ void Show(const Options& options) {
   fmt::print("  images {}x{}, {} neurons, a key frame every {} m\n",
              info["image"]["width"].get<int>(), info["image"]["height"].get<int>(),
              info["neurons"].get<int>(), info["spacing_m"].get<double>());
+  const auto& geometry = info["geometry"];
+  if (geometry["key_frames"].get<int>() > 0) {
+    fmt::print("  landmarks of {} key frames, {:.1f} kB each; errors {:.2f} times their model\n",
+               geometry["key_frames"].get<int>(), geometry["bytes_a_key_frame"].get<double>() / 1e3,
+               geometry["inflation"].get<double>());
+  }
   for (const auto& lap : info["laps"]) {
     fmt::print("  {:<24}{:>7} key frames\n", lap["name"].get<std::string>(),
                lap["key_frames"].get<int>());
@@ -61,19 +80,29 @@ void AddMap(CLI::App& app) {
   CLI::App* command = AddCommand(*map, "create", "Make a map of laps", create->common, [create] {
     ThreadPool pool(create->common.threads);
     create->create.network.seed = create->common.seed;
+    if (create->geometry) create->create.geometry = matching::LandmarkSource();
     CreateMap(create->map, create->laps.Read(), create->create, pool, TerminalProgress());
+    if (create->geometry) matching::CalibrateMap(create->map, pool, TerminalProgress());
     Show(*create);
   });
   command->add_option("map", create->map, "file to write")->required()->type_name("MAP");
   create->laps.AddTo(*command);
   command->add_option("--spacing", create->create.spacing_m, "metres between key frames of a lap")
       ->capture_default_str();
+  command
+      ->add_flag("--geometry,!--no-geometry", create->geometry,
+                 "keep landmarks of the key frames: features with depth, from depth images or\n"
+                 "from the frames around (at most 60 kB a key frame)")
+      ->default_str("true");
   AddWnnFlags(*command, create->create.network);
 
   const auto add = std::make_shared<Options>();
   command = AddCommand(*map, "add", "Append laps to a map", add->common, [add] {
     ThreadPool pool(add->common.threads);
-    AddToMap(add->map, add->laps.Read(), pool, TerminalProgress());
+    AddToMap(add->map, add->laps.Read(), pool, TerminalProgress(), matching::LandmarkSource());
+    if (Map::Open(add->map).HasGeometry()) {
+      matching::CalibrateMap(add->map, pool, TerminalProgress());
+    }
     Show(*add);
   });
   command->add_option("map", add->map, "file to append to")->required()->type_name("MAP");

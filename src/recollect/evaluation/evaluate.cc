@@ -11,6 +11,7 @@
 #include "recollect/core/error.h"
 #include "recollect/dataset/image.h"
 #include "recollect/dataset/sampling.h"
+#include "recollect/evaluation/trust.h"
 
 namespace recollect {
 namespace {
@@ -69,10 +70,10 @@ std::map<int, double> SharesWithin(const std::vector<LiveFrame>& frames, int Liv
 
 std::map<std::string, std::pair<double, double>> Latency(const std::vector<LiveFrame>& frames) {
   std::map<std::string, std::pair<double, double>> latency;
-  const std::pair<const char*, double StepTimes::*> steps[] = {{"recollect", &StepTimes::recollect},
-                                                               {"key_frame", &StepTimes::key_frame},
-                                                               {"relate", &StepTimes::relate},
-                                                               {"total", &StepTimes::total}};
+  const std::pair<const char*, double StepTimes::*> steps[] = {
+      {"recollect", &StepTimes::recollect}, {"key_frame", &StepTimes::key_frame},
+      {"relate", &StepTimes::relate},       {"features", &StepTimes::features},
+      {"verify", &StepTimes::verify},       {"total", &StepTimes::total}};
   for (const auto& [name, step] : steps) {
     std::vector<double> times;
     for (const LiveFrame& frame : frames) times.push_back(frame.answer.ms.*step);
@@ -93,7 +94,8 @@ PoseError Compare(const SE3& world_from_estimate, const SE3& world_from_truth) {
 Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptions& options,
                     const ProgressSink& progress) {
   const Map& map = localizer.map();
-  const std::vector<std::size_t> sampled = SampleFrames(live, options.spacing_m);
+  std::vector<std::size_t> sampled = SampleFrames(live, options.spacing_m);
+  LeaveOutMapped(map, live, options.leave_out, sampled);
   Require(sampled.size() >= 2, live.folder.string(), "has fewer than two frames to localise");
 
   std::vector<SE3> key_poses, place_poses, live_poses;
@@ -106,7 +108,8 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
 
   Evaluation result;
   result.lap = live.name;
-  std::vector<SE3> oracle_cnn;
+  const bool network = localizer.has_network();
+  const bool geometry = localizer.relative() != Relative::kCnn;
   for (std::size_t i = 0; i < sampled.size(); ++i) {
     const cv::Mat image = ReadColour(live.frames[sampled[i]].left);
     LiveFrame frame;
@@ -120,8 +123,19 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
         Apart(Nearest(place_poses, recollected), Nearest(place_poses, live_poses[i]));
     const std::size_t nearest = Nearest(key_poses, live_poses[i]);
     frame.nearest_key_frame = static_cast<int>(nearest);
-    oracle_cnn.push_back(key_poses[nearest] *
-                         localizer.Relate(image, map.Image(frame.nearest_key_frame)));
+    const auto judge = [&](const SE3& pose) { return Compare(pose, live_poses[i]); };
+    if (network) {
+      const bool known = frame.answer.carried_by == Relative::kCnn && !geometry;
+      frame.system =
+          judge(known ? frame.answer.world_from_camera
+                      : recollected * localizer.Relate(image, map.Image(frame.answer.key_frame)));
+      frame.oracle_cnn =
+          judge(key_poses[nearest] * localizer.Relate(image, map.Image(frame.nearest_key_frame)));
+    }
+    if (geometry) {
+      const auto verified = localizer.Verify(image, std::span(&frame.nearest_key_frame, 1));
+      if (verified) frame.pnp_oracle = judge(verified->world_from_camera);
+    }
     result.frames.push_back(frame);
     Report(progress, "localise", static_cast<std::int64_t>(i + 1),
            static_cast<std::int64_t>(sampled.size()));
@@ -129,10 +143,7 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
 
   const std::vector<LiveFrame>& frames = result.frames;
   const auto all = [](const LiveFrame&) { return true; };
-  const auto index = [&](const LiveFrame& f) {
-    return static_cast<std::size_t>(&f - frames.data());
-  };
-  const auto system = [&](const LiveFrame& f) {
+  const auto answer = [](const LiveFrame& f) {
     return Compare(f.answer.world_from_camera, f.true_world_from_camera);
   };
   const auto retrieval = [&](const LiveFrame& f) {
@@ -142,15 +153,33 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
   const auto well_recollected = [&](const LiveFrame& f) {
     return retrieval(f).position_m <= options.good_retrieval_m;
   };
-  result.rows.push_back(MakeRow("system", frames, all, system));
+  const auto add = [&](const char* name, std::optional<PoseError> LiveFrame::*error) {
+    result.rows.push_back(MakeRow(
+        name, frames, [&](const LiveFrame& f) { return (f.*error).has_value(); },
+        [&](const LiveFrame& f) { return *(f.*error); }));
+  };
+  if (network) add("system", &LiveFrame::system);
   result.rows.push_back(MakeRow("retrieval", frames, all, retrieval));
   result.rows.push_back(MakeRow("oracle", frames, all, [&](const LiveFrame& f) {
     return Compare(key_poses[static_cast<std::size_t>(f.nearest_key_frame)],
                    f.true_world_from_camera);
   }));
-  result.rows.push_back(MakeRow("oracle_cnn", frames, all, [&](const LiveFrame& f) {
-    return Compare(oracle_cnn[index(f)], f.true_world_from_camera);
-  }));
+  if (network) add("oracle_cnn", &LiveFrame::oracle_cnn);
+  if (geometry) {
+    add("pnp_oracle", &LiveFrame::pnp_oracle);
+    result.rows.push_back(MakeRow(
+        "pnp", frames, [](const LiveFrame& f) { return f.answer.by_geometry.has_value(); },
+        [](const LiveFrame& f) {
+          return Compare(f.answer.by_geometry->world_from_camera, f.true_world_from_camera);
+        }));
+    if (localizer.relative() == Relative::kFused) {
+      result.rows.push_back(MakeRow("fused", frames, all, answer));
+    }
+    result.rows.push_back(MakeRow(
+        "localised", frames, [](const LiveFrame& f) { return f.answer.state == State::kLocalised; },
+        answer));
+    result.trust = MakeTrust(frames, key_poses);
+  }
   if (!live.gps.empty()) {
     const auto fix = [&](const LiveFrame& f) -> const GpsFix* {
       const GpsFix* nearest = NearestFix(live, f.time);
@@ -165,7 +194,10 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
         }));
     result.rows.back().has_heading = false;
   }
-  result.rows_good_retrieval.push_back(MakeRow("system", frames, well_recollected, system));
+  if (network) {
+    result.rows_good_retrieval.push_back(
+        MakeRow("system", frames, well_recollected, [](const LiveFrame& f) { return *f.system; }));
+  }
   result.rows_good_retrieval.push_back(MakeRow("retrieval", frames, well_recollected, retrieval));
   result.within_frames = SharesWithin(frames, &LiveFrame::error_frames);
   result.within_labels = SharesWithin(frames, &LiveFrame::error_labels);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct PoseError {
 //   retrieval   the recollected key frame's pose as it is
 //   oracle      the nearest key frame's pose as it is, which no system is told
 //   oracle_cnn  the nearest key frame and the regressed pose to it (the paper's GT + CNN)
+//   pnp_oracle  geometry, told the nearest key frame; images where it finds a pose
+//   pnp         geometry on the committee's places; images where it finds a pose
+//   fused       geometry and network together, on all images
+//   localised   of fused (of pnp without a network) the answers in that state
 //   gps         the satellite receiver's position, where the lap has one
 struct Row {
   std::string name;
@@ -41,13 +46,32 @@ struct LiveFrame {
   SE3 true_world_from_camera;
   int nearest_key_frame = 0;  // the oracle's
   Localization answer;
+  std::optional<PoseError> system, oracle_cnn, pnp_oracle;  // see Row; none: it was not asked
   int error_frames = 0;  // |frames| between this one and that nearest to the recollected key frame
   int error_labels = 0;  // |places| between this one's and the recollected key frame's
+};
+
+// What the answers' own word is worth.
+struct Trust {
+  std::map<std::string, double> state_shares;         // of all images, by name of the state
+  double all_within_half_m = 0;                       // share of all images
+  double localised_within_half_m = 0;                 // share of the answers marked localised
+  double localised_max_m = 0;                         // the worst of them
+  double ellipsoid_pose = 0, ellipsoid_position = 0;  // share of them in their 95 % ellipsoid
+  double place_before = 0, place_after = 0;           // key frame within 5 m: recollected, verified
+};
+
+// Frames of the live lap that took part in the map, where it is one of its laps.
+enum class LeaveOut {
+  kNone,
+  kKeyFrames,  // those that became key frames
+  kSources,    // also those whose images the key frames' geometry was made of
 };
 
 struct EvaluationOptions {
   double spacing_m = 1;         // the live lap is thinned to this
   double good_retrieval_m = 5;  // see Evaluation::rows_good_retrieval
+  LeaveOut leave_out = LeaveOut::kNone;
 };
 
 struct Evaluation {
@@ -60,6 +84,7 @@ struct Evaluation {
   // Maximum Allowed Error -> share of frames whose place is right within it, in both readings of
   // the paper: counted in live frames, and in the map's places (key frames of its first lap).
   std::map<int, double> within_frames, within_labels;
+  std::optional<Trust> trust;  // where geometry took part
   // Step -> p50, p99 in milliseconds.
   std::map<std::string, std::pair<double, double>> latency_ms;
 };

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <numeric>
 #include <opencv2/core.hpp>
 
 #include "recollect/core/error.h"
@@ -11,6 +12,8 @@
 #include "recollect/core/parallel.h"
 #include "recollect/dataset/image.h"
 #include "recollect/evaluation/report.h"
+#include "recollect/evaluation/trust.h"
+#include "recollect/matching/mapped.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -109,6 +112,67 @@ TEST_F(EvaluateTest, GivesTheSameAnswersWithAnyNumberOfThreads) {
     EXPECT_EQ(a.confidence, b.confidence);
     EXPECT_EQ(a.world_from_camera.Matrix(), b.world_from_camera.Matrix());
   }
+}
+
+TEST_F(EvaluateTest, GeometryNeedsNoNetworkAndKnowsWhenItIsRight) {
+  MapOptions options;
+  options.geometry = matching::LandmarkSource();
+  CreateMap(folder_ / "g.map", mapped_, options, pool_);
+  const Map map = Map::Open(folder_ / "g.map");
+  Localizer localizer(map, std::nullopt, pool_);
+  EXPECT_EQ(localizer.relative(), Relative::kPnp);
+  const Evaluation e = Evaluate(localizer, live_);
+  SCOPED_TRACE(FormatTable(e));
+  ASSERT_EQ(e.rows.size(), 5u);
+  EXPECT_EQ(e.rows[0].name, "retrieval");
+  EXPECT_EQ(e.rows[2].name, "pnp_oracle");
+  EXPECT_LT(e.rows[2].position_m.median, 0.1);
+  EXPECT_EQ(e.rows[4].name, "localised");
+  EXPECT_GE(e.rows[4].availability, 0.5);
+  EXPECT_LT(e.rows[4].position_m.max, 0.5);
+  ASSERT_TRUE(e.trust);
+  EXPECT_NEAR(e.trust->state_shares.at("localised"), e.rows[4].availability, 1e-12);
+  EXPECT_DOUBLE_EQ(e.trust->localised_max_m, e.rows[4].position_m.max);
+  EXPECT_GE(e.trust->place_after, e.trust->place_before);
+
+  // Both together, with a network that always says "no motion".
+  Localizer both(map, cnn::PoseNetwork::Untrained(320, 240), pool_);
+  EXPECT_EQ(both.relative(), Relative::kFused);
+  const cv::Mat image = ReadColour(live_.frames[7].left);
+  const Localization by_pnp = localizer.Localize(image), fused = both.Localize(image);
+  if (by_pnp.state == State::kLocalised) {
+    EXPECT_EQ(fused.world_from_camera.Matrix(), by_pnp.world_from_camera.Matrix());
+    EXPECT_EQ(fused.carried_by, Relative::kPnp);
+  }
+  const Localization dark = both.Localize(cv::Mat(240, 320, CV_8UC3, cv::Scalar(2, 2, 2)));
+  EXPECT_EQ(dark.state, State::kLost);
+  EXPECT_GT(dark.covariance.diagonal().minCoeff(), 0);
+
+  // What cannot be done is refused.
+  const Map plain = Map::Open(folder_ / "m.map");
+  EXPECT_THROW(Localizer(plain, std::nullopt, pool_), Error);
+  LocalizerOptions wanted;
+  wanted.relative = Relative::kPnp;
+  EXPECT_THROW(Localizer(plain, std::nullopt, pool_, wanted), Error);
+  wanted.relative = Relative::kCnn;
+  EXPECT_THROW(Localizer(map, std::nullopt, pool_, wanted), Error);
+}
+
+TEST_F(EvaluateTest, LeavesOutWhatTheMapWasMadeOf) {
+  MapOptions options;
+  options.geometry = matching::LandmarkSource();
+  CreateMap(folder_ / "g.map", mapped_, options, pool_);
+  const Map map = Map::Open(folder_ / "g.map");
+  std::vector<std::size_t> frames(30);
+  std::iota(frames.begin(), frames.end(), std::size_t{0});
+  std::vector<std::size_t> between = frames, unseen = frames;
+  LeaveOutMapped(map, mapped_[0], LeaveOut::kKeyFrames, between);
+  EXPECT_EQ(between.size(), 24u);
+  EXPECT_EQ(between.front(), 1u);
+  LeaveOutMapped(map, mapped_[0], LeaveOut::kSources, unseen);
+  EXPECT_LT(unseen.size(), between.size());
+  LeaveOutMapped(map, live_, LeaveOut::kSources, frames);
+  EXPECT_EQ(frames.size(), 30u);
 }
 
 TEST_F(EvaluateTest, FramesCsvHasALineAFrame) {

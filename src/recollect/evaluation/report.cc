@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "recollect/core/files.h"
@@ -32,6 +33,22 @@ std::string FormatRow(const std::string& name, const Row& row) {
   return line + fmt::format("{:8.1f}\n", 100 * row.availability);
 }
 
+std::string FormatTrust(const Trust& t) {
+  std::string text = "\n  answers in state";
+  for (const auto& [name, share] : t.state_shares) {
+    text += fmt::format("   {} {:.1f} %", name, 100 * share);
+  }
+  return text +
+         fmt::format(
+             "\n  within 0.5 m: {:.1f} % of all images, {:.1f} % of the localised; the worst "
+             "localised {:.3f} m\n"
+             "  localised within their 95 % ellipsoid: {:.1f} % (pose), {:.1f} % (position)\n"
+             "  key frame within 5 m: recollected {:.1f} %, verified {:.1f} %\n",
+             100 * t.all_within_half_m, 100 * t.localised_within_half_m, t.localised_max_m,
+             100 * t.ellipsoid_pose, 100 * t.ellipsoid_position, 100 * t.place_before,
+             100 * t.place_after);
+}
+
 }  // namespace
 
 std::string FormatTable(const Evaluation& e) {
@@ -49,6 +66,7 @@ std::string FormatTable(const Evaluation& e) {
   for (const Row& row : e.rows) text += FormatRow(row.name, row);
   text += "  where the recollected key frame lies within 5 m of the truth:\n";
   for (const Row& row : e.rows_good_retrieval) text += FormatRow("  " + row.name, row);
+  if (e.trust) text += FormatTrust(*e.trust);
   text += "\n  time an image, ms         p50     p99\n";
   for (const auto& [step, times] : e.latency_ms) {
     text += fmt::format("    {:<18}{:8.1f}{:8.1f}\n", step, times.first, times.second);
@@ -71,6 +89,17 @@ nlohmann::json ToFigures(const Evaluation& e) {
     figures["recollected_within_5m"]["share"] = row.availability;
     figures["recollected_within_5m"]["position_m"][row.name] = ToJson(row.position_m);
   }
+  if (e.trust) {
+    const Trust& t = *e.trust;
+    figures["states"] = t.state_shares;
+    figures["trust"] = {{"all_within_half_m", t.all_within_half_m},
+                        {"localised_within_half_m", t.localised_within_half_m},
+                        {"localised_max_m", t.localised_max_m},
+                        {"ellipsoid_pose", t.ellipsoid_pose},
+                        {"ellipsoid_position", t.ellipsoid_position},
+                        {"place_before", t.place_before},
+                        {"place_after", t.place_after}};
+  }
   for (const auto& [step, times] : e.latency_ms) {
     figures["latency_ms"][step] = {{"p50", times.first}, {"p99", times.second}};
   }
@@ -78,7 +107,9 @@ nlohmann::json ToFigures(const Evaluation& e) {
 }
 
 void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
-  std::string csv = "frame,time,true_x,true_y,true_z,x,y,z,key_frame,nearest_key_frame,confidence";
+  std::string csv =
+      "frame,time,true_x,true_y,true_z,x,y,z,key_frame,nearest_key_frame,confidence,"
+      "place,state,carried_by,support,spread,position_sigma_m";
   for (const Row& row : e.rows) {
     csv += fmt::format(",{0}_position_m", row.name);
     if (row.has_heading) csv += fmt::format(",{0}_heading_deg", row.name);
@@ -92,6 +123,10 @@ void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
     csv += fmt::format("{},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{:.4f}", f.frame,
                        f.time, truth.x(), truth.y(), truth.z(), p.x(), p.y(), p.z(),
                        f.answer.key_frame, f.nearest_key_frame, f.answer.confidence);
+    const Localization& a = f.answer;
+    csv +=
+        fmt::format(",{},{},{},{},{:.3f},{:.4f}", a.place, Name(a.state), Name(a.carried_by),
+                    a.support, a.spread, std::sqrt(a.covariance.bottomRightCorner<3, 3>().trace()));
     for (std::size_t r = 0; r < e.rows.size(); ++r) {
       const Row& row = e.rows[r];
       const bool answered = next[r] < row.frames.size() && row.frames[next[r]] == i;

@@ -1,17 +1,54 @@
 #include "recollect/localization/localizer.h"
 
+#include <algorithm>
+#include <numbers>
+
 #include "recollect/core/error.h"
 #include "recollect/core/stopwatch.h"
+#include "recollect/localization/proposals.h"
+#include "recollect/matching/mapped.h"
 #include "recollect/wnn/displaced.h"
 
 namespace recollect {
+namespace {
 
-Localizer::Localizer(const Map& map, cnn::PoseNetwork network, ThreadPool& pool,
-                     const wnn::SearchOptions& search)
+// A network's answer further off than this from what geometry finds says nothing of it.
+constexpr double kWideSearchPx = 30;
+
+Relative Choose(const std::optional<Relative>& wanted, bool network, bool geometry) {
+  if (!wanted) {
+    Require(network || geometry, "localizer", "has neither a network nor a map with geometry",
+            "give --model, or create the map with --geometry");
+    return !geometry ? Relative::kCnn : network ? Relative::kFused : Relative::kPnp;
+  }
+  Require(*wanted == Relative::kPnp || network, "localizer",
+          fmt::format("'{}' needs a network", Name(*wanted)), "give --model");
+  Require(*wanted == Relative::kCnn || geometry, "localizer",
+          fmt::format("'{}' needs geometry, the map has none", Name(*wanted)),
+          "create the map with --geometry");
+  return *wanted;
+}
+
+}  // namespace
+
+std::string Name(Relative relative) {
+  return relative == Relative::kCnn ? "cnn" : relative == Relative::kPnp ? "pnp" : "fused";
+}
+
+std::string Name(State state) {
+  return state == State::kLocalised   ? "localised"
+         : state == State::kUncertain ? "uncertain"
+                                      : "lost";
+}
+
+Localizer::Localizer(const Map& map, std::optional<cnn::PoseNetwork> network, ThreadPool& pool,
+                     const LocalizerOptions& options)
     : map_(map),
       network_(std::move(network)),
       pool_(pool),
-      search_(search),
+      options_(options),
+      relative_(Choose(options.relative, network_.has_value(), map.HasGeometry())),
+      frames_(matching::FramesOf(map)),
       encoder_(map.description().network, map.description().camera.left.width,
                map.description().camera.left.height, pool) {
   Require(map.size() > 0, "map", "has no key frames");
@@ -23,24 +60,112 @@ Localization Localizer::Localize(const cv::Mat& image, const std::string& name) 
 
   // Section III-A: the committee of neurons recollects the most similar key frame.
   const wnn::Recollection recollection = Recollect(image, name);
-  answer.key_frame = recollection.winner;
+  answer.key_frame = answer.place = recollection.winner;
   answer.confidence = recollection.confidence;
   answer.ms.recollect = step.Milliseconds();
 
-  step.Restart();
+  // Section III: G_L = G_K T(delta), T(delta) by the siamese network (III-B) or from landmarks.
+  if (relative_ == Relative::kCnn) {
+    RelateByNetwork(image, answer);
+  } else {
+    RelateByGeometry(image, recollection, answer);
+  }
+  answer.keyframe_from_live =
+      map_.At(answer.key_frame).world_from_camera.Inverse() * answer.world_from_camera;
+  answer.ms.total = whole.Milliseconds();
+  return answer;
+}
+
+void Localizer::RelateByNetwork(const cv::Mat& image, Localization& answer) {
+  Stopwatch step;
   const KeyFrame key_frame = map_.At(answer.key_frame);
   const cv::Mat key_image = map_.Image(answer.key_frame);
   answer.ms.key_frame = step.Milliseconds();
-
-  // Section III-B: the siamese network regresses the live camera's pose in the key frame's.
   step.Restart();
-  answer.keyframe_from_live = Relate(image, key_image);
+  answer.world_from_camera = key_frame.world_from_camera * Relate(image, key_image);
+  answer.covariance = NetworkPrior(answer.world_from_camera).covariance;
+  answer.carried_by = Relative::kCnn;
+  answer.state = State::kUncertain;
   answer.ms.relate = step.Milliseconds();
+}
 
-  // Section III: G_L = G_K T(delta).
-  answer.world_from_camera = key_frame.world_from_camera * answer.keyframe_from_live;
-  answer.ms.total = whole.Milliseconds();
-  return answer;
+void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& recollection,
+                                 Localization& answer) {
+  Stopwatch step;
+  const matching::Features live = matching::FindFeatures(matching::ToGray(image));
+  answer.ms.features = step.Milliseconds();
+  step.Restart();
+  const std::vector<int> proposals =
+      ProposePlaces(recollection.histogram, frames_.world_from_camera, options_.verify.place_m,
+                    options_.proposals);
+  const auto verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify);
+  answer.by_geometry = verified;
+  answer.ms.verify = step.Milliseconds();
+  if (verified && matching::IsSure(*verified, options_.sure)) {
+    Take(*verified, Relative::kPnp, answer);
+    return;
+  }
+  if (relative_ == Relative::kPnp) {
+    if (verified) {
+      Take(*verified, Relative::kPnp, answer);
+      return;
+    }
+    answer.world_from_camera = map_.At(answer.key_frame).world_from_camera;
+    answer.covariance.diagonal() << 0.01, 0.01, 0.01, 25, 25, 25;
+    answer.carried_by = Relative::kPnp;
+    answer.state = State::kLost;
+    return;
+  }
+  // Unsure: the network's pose leads to matches that stood out too little by themselves. It starts
+  // from where verification points, else from the likeliest place.
+  const int recollected = answer.key_frame;
+  answer.key_frame = verified ? verified->key_frame : proposals.front();
+  RelateByNetwork(image, answer);
+  answer.place = answer.key_frame;
+  answer.key_frame = recollected;
+  step.Restart();
+  matching::VerifyOptions wide = options_.verify;
+  wide.guided_px[0] = kWideSearchPx;
+  const auto together = matching::RefineFrom(frames_, live, answer.world_from_camera, wide,
+                                             NetworkPrior(answer.world_from_camera));
+  answer.ms.verify += step.Milliseconds();
+  if (together && (!verified || together->support > verified->support)) {
+    Take(*together, Relative::kFused, answer);
+  } else if (verified) {
+    Take(*verified, Relative::kPnp, answer);
+  } else {
+    answer.state = State::kLost;
+  }
+}
+
+void Localizer::Take(const matching::Verified& verified, Relative carried_by,
+                     Localization& answer) const {
+  const double inflation = std::max(1.0, map_.description().geometry_inflation);
+  answer.world_from_camera = verified.world_from_camera;
+  answer.covariance = inflation * inflation * verified.covariance;
+  answer.place = verified.nearest_key_frame;
+  answer.support = verified.support;
+  answer.spread = verified.spread;
+  answer.carried_by = carried_by;
+  answer.state = matching::IsSure(verified, options_.sure) ? State::kLocalised : State::kUncertain;
+}
+
+matching::PosePrior Localizer::NetworkPrior(const SE3& world_from_camera) const {
+  const cnn::PairFigures& figures = network_->info().validation;
+  // Without validation: as bad as a key frame's own pose, 2 m and 3 degrees.
+  const double position = figures.pairs > 0 ? figures.position_mean_m : 2;
+  const double heading =
+      (figures.pairs > 0 ? figures.heading_mean_deg : 3) * std::numbers::pi / 180;
+  matching::PosePrior prior{world_from_camera, Matrix6d::Zero()};
+  prior.covariance.diagonal().head<3>().setConstant(heading * heading);
+  prior.covariance.diagonal().tail<3>().setConstant(position * position);
+  return prior;
+}
+
+std::optional<matching::Verified> Localizer::Verify(const cv::Mat& image,
+                                                    std::span<const int> proposals) {
+  return matching::VerifyPlaces(frames_, matching::FindFeatures(matching::ToGray(image)), proposals,
+                                options_.verify);
 }
 
 wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& name) {
@@ -52,13 +177,14 @@ wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& 
           "localise with the camera that made the map");
   const wnn::ImageView view{image.data, image.cols, image.rows, 3,
                             static_cast<std::ptrdiff_t>(image.step)};
-  return wnn::RecollectImage(map_.memory(), encoder_, view, pool_, search_);
+  return wnn::RecollectImage(map_.memory(), encoder_, view, pool_, options_.search);
 }
 
 SE3 Localizer::Relate(const cv::Mat& live, const cv::Mat& key_frame) {
-  const cnn::Crop& crop = network_.crop();
-  return network_.KeyframeFromLive(crop.Apply(live, "live image"),
-                                   crop.Apply(key_frame, "key frame"));
+  Require(network_.has_value(), "localizer", "has no network", "give --model");
+  const cnn::Crop& crop = network_->crop();
+  return network_->KeyframeFromLive(crop.Apply(live, "live image"),
+                                    crop.Apply(key_frame, "key frame"));
 }
 
 }  // namespace recollect

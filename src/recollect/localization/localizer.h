@@ -1,20 +1,41 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "recollect/cnn/pose_network.h"
 #include "recollect/map/map.h"
+#include "recollect/matching/verify.h"
 #include "recollect/wnn/encoder.h"
 #include "recollect/wnn/search.h"
 
 namespace recollect {
+
+// Who says where the camera stood relative to the key frames.
+enum class Relative {
+  kCnn,    // the paper's: the network, from the recollected key frame
+  kPnp,    // geometry: landmarks of the best supported place; without any, the key frame's pose
+  kFused,  // geometry where it is sure; else both together, else the network
+};
+std::string Name(Relative relative);
+
+// How far an answer is to be relied on.
+enum class State {
+  kLocalised,  // many matches all over the image agree on it, and no other place comes near
+  kUncertain,  // the most likely answer, resting on less than that
+  kLost,       // nothing speaks for it but the committee
+};
+std::string Name(State state);
 
 // Time spent on one image, milliseconds.
 struct StepTimes {
   double recollect = 0;  // pattern of the image, search, votes
   double key_frame = 0;  // fetching and decoding the key frame's image
   double relate = 0;     // relative pose by the network
+  double features = 0;   // of the live image
+  double verify = 0;     // matching, poses and refinement
   double total = 0;
 };
 
@@ -22,34 +43,64 @@ struct StepTimes {
 struct Localization {
   SE3 world_from_camera;   // G_L, in the map's world, of the left camera
   int key_frame = -1;      // the one recollected, a number in the map
-  SE3 keyframe_from_live;  // T(delta)
+  int place = -1;          // the key frame that stands for the answer's place once it is verified
+  SE3 keyframe_from_live;  // T(delta): world_from_camera as seen from key_frame
   double confidence = 0;   // the committee's: (votes of the first - of the second) / of the first
+  // Of world_from_camera: the truth is world_from_camera * Exp(xi), xi ~ N(0, covariance), rotation
+  // first: rad and m in the camera's axes. Of the network: its errors on its validation pairs.
+  Matrix6d covariance = Matrix6d::Zero();
+  State state = State::kUncertain;
+  Relative carried_by = Relative::kCnn;  // which part the pose comes from
+  int support = 0;                       // features that agree with it
+  double spread = 0;                     // share of the image that these are spread over
+  std::optional<matching::Verified> by_geometry;  // what geometry found by itself, if anything
   StepTimes ms;
+};
+
+struct LocalizerOptions {
+  std::optional<Relative> relative;  // none: fused, or what map and network allow
+  wnn::SearchOptions search;
+  matching::VerifyOptions verify;
+  matching::SureOptions sure;
+  int proposals = 40;  // key frames of the committee that verification chooses places from
 };
 
 // Localises images against a map, without any other input. Holds no state between images.
 // Not to be called from two threads at a time.
 class Localizer {
  public:
-  // `map` and `pool` must outlive it. Throws Error where the network's crop does not fit the
-  // map's images.
-  Localizer(const Map& map, cnn::PoseNetwork network, ThreadPool& pool,
-            const wnn::SearchOptions& search = {});
+  // `map` and `pool` must outlive it. Throws Error where the network's crop does not fit the map's
+  // images, or options ask for a network that is not given or geometry that the map has not.
+  Localizer(const Map& map, std::optional<cnn::PoseNetwork> network, ThreadPool& pool,
+            const LocalizerOptions& options = {});
 
   // image: 8-bit B, G, R of the map camera's size; throws Error calling it `name` otherwise.
   Localization Localize(const cv::Mat& image, const std::string& name = "live image");
 
-  // The two halves of Localize, for judging each by itself.
+  // The parts of Localize, for judging each by itself.
   wnn::Recollection Recollect(const cv::Mat& image, const std::string& name = "live image");
   SE3 Relate(const cv::Mat& live, const cv::Mat& key_frame);
+  // By geometry alone, from what the committee proposes or from key frames named by the caller.
+  std::optional<matching::Verified> Verify(const cv::Mat& image, std::span<const int> proposals);
 
   const Map& map() const { return map_; }
+  bool has_network() const { return network_.has_value(); }
+  Relative relative() const { return relative_; }
 
  private:
+  // Each sets what it knows of the answer.
+  void RelateByNetwork(const cv::Mat& image, Localization& answer);
+  void RelateByGeometry(const cv::Mat& image, const wnn::Recollection& recollection,
+                        Localization& answer);
+  void Take(const matching::Verified& verified, Relative carried_by, Localization& answer) const;
+  matching::PosePrior NetworkPrior(const SE3& world_from_camera) const;
+
   const Map& map_;
-  cnn::PoseNetwork network_;
+  std::optional<cnn::PoseNetwork> network_;
   ThreadPool& pool_;
-  wnn::SearchOptions search_;
+  LocalizerOptions options_;
+  Relative relative_;
+  matching::MappedFrames frames_;
   wnn::Encoder encoder_;
 };
 
