@@ -1,11 +1,13 @@
 #include "recollect/depth/motion.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "recollect/core/error.h"
@@ -18,8 +20,9 @@ namespace {
 class MotionDepth : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    lap_ = new Lap(testing::DriveStreet(
-        std::filesystem::temp_directory_path() / "recollect_motion_depth", {.length_m = 8}));
+    lap_ = new Lap(testing::DriveStreet(std::filesystem::temp_directory_path() /
+                                            ("recollect_motion_depth_" + std::to_string(getpid())),
+                                        {.length_m = 8}));
   }
   static void TearDownTestSuite() {
     std::filesystem::remove_all(lap_->folder);
