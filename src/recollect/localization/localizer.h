@@ -50,9 +50,9 @@ struct Localization {
   // first: rad and m in the camera's axes. Of the network: its errors on its validation pairs.
   Matrix6d covariance = Matrix6d::Zero();
   State state = State::kUncertain;
-  Relative carried_by = Relative::kCnn;  // which part the pose comes from
-  int support = 0;                       // features that agree with it
-  double spread = 0;                     // share of the image that these are spread over
+  Relative carried_by = Relative::kCnn;           // which part the pose comes from
+  int support = 0;                                // features that agree with it
+  double spread = 0;                              // share of the image that these are spread over
   std::optional<matching::Verified> by_geometry;  // what geometry found by itself, if anything
   StepTimes ms;
 };
