@@ -6,6 +6,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/core/instructions.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/random.h"
 
@@ -16,6 +17,21 @@ TEST(Error, SaysWhereWhatAndWhatToDo) {
   const Error error(AtLine("poses.txt", 3), "11 numbers where 12 belong", "write 3x4 rows");
   EXPECT_STREQ(error.what(), "poses.txt:3: 11 numbers where 12 belong; write 3x4 rows");
   EXPECT_STREQ(Error("a", "b").what(), "a: b");
+}
+
+TEST(Instructions, KeepsTheTablesThatThisMachineRunsInOrder) {
+  EXPECT_TRUE(Runs(Instructions::kPlain));
+  EXPECT_FALSE(Runs(Instructions::kNeon) && Runs(Instructions::kAvx2));
+  EXPECT_FALSE(Runs(Instructions::kAvx512Popcount) && !Runs(Instructions::kAvx512));
+  EXPECT_FALSE(Runs(Instructions::kAvx512) && !Runs(Instructions::kAvx2));
+  const int fast = 1, wide = 2, plain = 3;
+  std::vector<const int*> expected = {&plain, &fast};
+  if (Runs(Instructions::kAvx2)) expected.insert(expected.begin(), &wide);
+  EXPECT_EQ(Runnable<int>({{Instructions::kAvx2, &wide},
+                           {Instructions::kPlain, nullptr},
+                           {Instructions::kPlain, &plain},
+                           {Instructions::kPlain, &fast}}),
+            expected);
 }
 
 TEST(ThreadPool, CoversEveryIndexOnceWithAnyThreadsAndGrain) {

@@ -62,6 +62,7 @@ struct Kernel {
                   std::uint16_t* best, std::uint16_t* right_cost, std::uint16_t* right_best);
 };
 
+// Each is null where the compiler's target lacks the instruction set.
 extern const Kernel kPlainKernel;
 const Kernel* Avx2Kernel();
 const Kernel* Avx512Kernel();

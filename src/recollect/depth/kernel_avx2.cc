@@ -190,4 +190,10 @@ constexpr Kernel kKernel = {"avx2", Match, Slide, Window, Sweep, Winners};
 const Kernel* Avx2Kernel() { return &kKernel; }
 
 }  // namespace recollect::stereo
+#else
+#include "recollect/depth/kernel.h"
+
+namespace recollect::stereo {
+const Kernel* Avx2Kernel() { return nullptr; }
+}  // namespace recollect::stereo
 #endif

@@ -195,4 +195,10 @@ constexpr Kernel kKernel = {"avx512", Match, Slide, Window, Sweep, Winners};
 const Kernel* Avx512Kernel() { return &kKernel; }
 
 }  // namespace recollect::stereo
+#else
+#include "recollect/depth/kernel.h"
+
+namespace recollect::stereo {
+const Kernel* Avx512Kernel() { return nullptr; }
+}  // namespace recollect::stereo
 #endif

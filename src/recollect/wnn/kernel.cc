@@ -2,27 +2,16 @@
 
 #include <vector>
 
+#include "recollect/core/instructions.h"
+
 namespace recollect::wnn {
-namespace {
-
-std::vector<const Kernel*> Supported() {
-  std::vector<const Kernel*> kernels;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vpopcntdq")) {
-    kernels.push_back(Avx512Kernel());
-  }
-  if (__builtin_cpu_supports("avx2")) kernels.push_back(Avx2Kernel());
-#elif defined(__aarch64__)
-  kernels.push_back(NeonKernel());
-#endif
-  kernels.push_back(&kPlainKernel);
-  return kernels;
-}
-
-}  // namespace
 
 std::span<const Kernel* const> Kernels() {
-  static const std::vector<const Kernel*> kernels = Supported();
+  static const std::vector<const Kernel*> kernels =
+      Runnable<Kernel>({{Instructions::kAvx512Popcount, Avx512Kernel()},
+                        {Instructions::kAvx2, Avx2Kernel()},
+                        {Instructions::kNeon, NeonKernel()},
+                        {Instructions::kPlain, &kPlainKernel}});
   return kernels;
 }
 

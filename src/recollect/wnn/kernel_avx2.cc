@@ -119,4 +119,10 @@ constexpr Kernel kKernel = {"avx2", Cells, Probe, Scan, ScanBatch};
 const Kernel* Avx2Kernel() { return &kKernel; }
 
 }  // namespace recollect::wnn
+#else
+#include "recollect/wnn/kernel.h"
+
+namespace recollect::wnn {
+const Kernel* Avx2Kernel() { return nullptr; }
+}  // namespace recollect::wnn
 #endif

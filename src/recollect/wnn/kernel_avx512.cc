@@ -156,4 +156,10 @@ constexpr Kernel kKernel = {"avx512", Cells, Probe, Scan, ScanBatch};
 const Kernel* Avx512Kernel() { return &kKernel; }
 
 }  // namespace recollect::wnn
+#else
+#include "recollect/wnn/kernel.h"
+
+namespace recollect::wnn {
+const Kernel* Avx512Kernel() { return nullptr; }
+}  // namespace recollect::wnn
 #endif

@@ -75,4 +75,10 @@ constexpr Kernel kKernel = {"neon", PlainCells, Probe, Scan, ScanBatch};
 const Kernel* NeonKernel() { return &kKernel; }
 
 }  // namespace recollect::wnn
+#else
+#include "recollect/wnn/kernel.h"
+
+namespace recollect::wnn {
+const Kernel* NeonKernel() { return nullptr; }
+}  // namespace recollect::wnn
 #endif
