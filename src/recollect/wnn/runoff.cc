@@ -99,8 +99,9 @@ Verdict AskRunoff(const Memory& memory, Asking& asking, const Tally& tally,
     for (std::size_t c = 1; c < count; ++c) {
       if (ahead(c, leader)) leader = c;
     }
-    // Half of the chance to err goes to the label that led at first, half to all others.
-    const double stake = 2 / error_bound * (leader == 0 ? 1 : static_cast<double>(count));
+    // The shares of the chance to err, 1/2, 1/6, 1/12 ... by rank at first, sum to one.
+    const auto rank = static_cast<double>(leader);
+    const double stake = (rank + 1) * (rank + 2) / error_bound;
     double least = kInfinity;
     std::size_t rival = leader;
     second = 0;

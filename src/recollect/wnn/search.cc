@@ -55,7 +55,7 @@ std::optional<Verdict> AskUntil(const Memory& memory, Asking& asking,
   if (asking.empty()) return {};
   const int neurons = memory.neurons();
   // Peeking at many entries pays in a large memory only.
-  const int rivals = std::clamp(memory.entries() / 64, 2, 16);
+  const int rivals = std::clamp(memory.entries() / 64, 2, 64);
   // Half of the chance to err is for the count, half for the runoff.
   Tally tally(memory.labels(), neurons, options.error_bound / 2);
   for (int asked = 0; asked < neurons;) {

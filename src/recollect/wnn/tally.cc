@@ -7,8 +7,12 @@
 namespace recollect::wnn {
 namespace {
 
-// Votes counted before anyone is nominated: the first leaders change with every vote.
+// Votes counted before anyone is nominated: the first leaders change with every vote. Nominations
+// are repeated when so many times as many votes are in; each time takes half of what stakes are
+// left.
 constexpr int kPilot = 32;
+constexpr int kNextRound = 4;
+constexpr std::size_t kNominees = 4;
 
 }  // namespace
 
@@ -36,14 +40,26 @@ double LogEvidence(int a, int b) {
 
 Tally::Tally(int labels, int neurons, double error_bound)
     : neurons_(neurons),
-      error_bound_(error_bound),
-      votes_(static_cast<std::size_t>(labels), 0),
-      term_of_(static_cast<std::size_t>(labels), 0),
-      votes_in_term_(static_cast<std::size_t>(labels), 0) {}
+      log_bound_(std::log(error_bound)),
+      votes_(static_cast<std::size_t>(labels), 0) {}
 
 void Tally::Nominate() {
-  ++terms_;
-  for_leader_ = for_rival_ = 0;
+  std::vector<int> best = voted_;
+  const auto kept = std::min(kNominees, best.size());
+  std::partial_sort(
+      best.begin(), best.begin() + static_cast<std::ptrdiff_t>(kept), best.end(),
+      [&](int a, int b) { return votes(a) > votes(b) || (votes(a) == votes(b) && a < b); });
+  votes_at_.push_back(votes_);
+  const double stake = std::pow(0.5, static_cast<double>(votes_at_.size()));
+  for (std::size_t i = 0; i < kept; ++i) {
+    // Half for the leader, the other half for the rest.
+    const double share = i == 0 ? 0.5 : 0.5 / static_cast<double>(kNominees - 1);
+    Nominee nominee{best[i], std::log(stake * share), votes_at_.size() - 1, {best[i]}};
+    for (const int label : best) {
+      if (votes(label) > votes(best[i])) nominee.overtakers.push_back(label);
+    }
+    nominees_.push_back(std::move(nominee));
+  }
 }
 
 void Tally::Add(int label) {
@@ -55,46 +71,64 @@ void Tally::Add(int label) {
   if (label != leader_ && ahead) {
     second_ = leader_ < 0 ? 0 : votes(leader_);
     leader_ = label;
-    if (read_ > kPilot) return Nominate();
   } else if (label != leader_) {
     second_ = std::max(second_, votes_[i]);
   }
-  if (read_ == kPilot) Nominate();
-  if (read_ <= kPilot) return;
-
-  if (term_of_[i] != terms_) {
-    term_of_[i] = terms_;
-    votes_in_term_[i] = 0;
+  for (Nominee& nominee : nominees_) {
+    auto& overtakers = nominee.overtakers;
+    if (votes_[i] == votes(nominee.label) + 1 &&
+        std::find(overtakers.begin(), overtakers.end(), label) == overtakers.end()) {
+      overtakers.push_back(label);
+    }
   }
-  const int in_term = ++votes_in_term_[i];
-  if (label == leader_) {
-    for_leader_ = in_term;
-  } else {
-    for_rival_ = std::max(for_rival_, in_term);
+  if (read_ == kPilot || (!votes_at_.empty() && read_ == next_round_)) {
+    Nominate();
+    next_round_ = read_ * kNextRound;
   }
 }
 
 bool Tally::Certain() const { return leader_ >= 0 && votes(leader_) - second_ > neurons_ - read_; }
 
-bool Tally::Enough(int for_rival) const {
-  if (terms_ == 0 || for_leader_ <= for_rival) return false;
-  // Term t may err with a chance of error_bound / (t (t + 1)); these sum to error_bound.
-  const double stake = static_cast<double>(terms_) * (terms_ + 1.0) / error_bound_;
-  return LogEvidence(for_leader_, for_rival) >= std::log(stake);
+bool Tally::Lost(std::span<const int> most, int rival) const {
+  double evidence = 0;
+  for (const Nominee& nominee : nominees_) {
+    const auto& overtakers = nominee.overtakers;
+    if (std::find(overtakers.begin(), overtakers.end(), rival) != overtakers.end()) continue;
+    const auto& before = votes_at_[nominee.round];
+    const int for_nominee = votes(nominee.label) - before[static_cast<std::size_t>(nominee.label)];
+    const double score = LogEvidence(for_nominee, most[nominee.round]) + nominee.log_stake;
+    evidence += std::exp(std::min(700.0, score + log_bound_));
+    if (evidence >= 1) return true;
+  }
+  return false;
 }
 
-bool Tally::Confident() const { return Certain() || Enough(for_rival_); }
+bool Tally::Confident() const { return Certain() || ConfidentBut({}); }
 
 bool Tally::ConfidentBut(std::span<const int> rivals) const {
-  int for_others = 0;
-  for (const int label : voted_) {
-    const auto i = static_cast<std::size_t>(label);
-    if (label == leader_ || term_of_[i] != terms_ || votes_in_term_[i] <= for_others) continue;
-    if (std::find(rivals.begin(), rivals.end(), label) == rivals.end()) {
-      for_others = votes_in_term_[i];
-    }
+  std::vector<int> apart;  // labels that some nominee may not bet against
+  for (const Nominee& nominee : nominees_) {
+    apart.insert(apart.end(), nominee.overtakers.begin(), nominee.overtakers.end());
   }
-  return Enough(for_others);
+  std::sort(apart.begin(), apart.end());
+  apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
+  std::vector<int> most(votes_at_.size(), 0), own(votes_at_.size());
+  const auto since = [&](int label, std::size_t round) {
+    return votes(label) - votes_at_[round][static_cast<std::size_t>(label)];
+  };
+  const auto spared = [&](int label) {
+    return label == leader_ || std::find(rivals.begin(), rivals.end(), label) != rivals.end();
+  };
+  for (const int label : voted_) {
+    if (spared(label)) continue;
+    const bool alone = std::binary_search(apart.begin(), apart.end(), label);
+    for (std::size_t round = 0; round < most.size(); ++round) {
+      own[round] = since(label, round);
+      if (!alone) most[round] = std::max(most[round], own[round]);
+    }
+    if (alone && !Lost(own, label)) return false;
+  }
+  return Lost(most, -1);
 }
 
 }  // namespace recollect::wnn

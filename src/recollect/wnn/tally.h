@@ -27,25 +27,32 @@ class Tally {
   bool Certain() const;
   // The leader wins, but for a chance of at most error_bound. See docs/search.md, "Anytime".
   bool Confident() const;
-  // The same of the leader against all labels but those in `rivals`.
+  // The same of the leader and `rivals`: one of them wins.
   bool ConfidentBut(std::span<const int> rivals) const;
 
  private:
+  // A label that bets against all that might win instead of it, from a fixed time on.
+  struct Nominee {
+    int label;
+    double log_stake;             // its share of all stakes
+    std::size_t round;            // index of the counts at its nomination
+    std::vector<int> overtakers;  // labels that had more votes at some time since; itself
+  };
   void Nominate();
-  bool Enough(int for_rival) const;
+  // Whether label `rival`, or any label with at most `most[round]` votes since each nomination that
+  // overtook no nominee, has lost.
+  bool Lost(std::span<const int> most, int rival) const;
 
   int neurons_;
-  double error_bound_;
+  double log_bound_;
   std::vector<int> votes_;  // by label
   std::vector<int> voted_;
   int read_ = 0;
   int leader_ = -1;
-  int second_ = 0;  // votes of the best label but the leader
-
-  // The leader's present term: how many votes it and its best rival got since it took the lead.
-  int terms_ = 0;
-  int for_leader_ = 0, for_rival_ = 0;
-  std::vector<int> term_of_, votes_in_term_;  // by label; the count holds if term_of_ is terms_
+  int second_ = 0;      // votes of the best label but the leader
+  int next_round_ = 0;  // votes at the next nominations
+  std::vector<Nominee> nominees_;
+  std::vector<std::vector<int>> votes_at_;  // by round of nominations, by label
 };
 
 // Evidence, as a betting score, that a vote for a or b goes to a more often than not: a fair bet

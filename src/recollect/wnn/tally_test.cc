@@ -88,6 +88,24 @@ TEST(Tally, ErrsNoMoreOftenThanPromisedWhenLabelsTie) {
   }
 }
 
+// Two labels that take turns in the lead keep no one from ruling out the rest.
+TEST(Tally, RulesOutTheRestWhileTheFirstTwoAreLevel) {
+  std::vector<int> population(400, 3);
+  population[7] = population[9] = 600;
+  Random random(4);
+  double read = 0;
+  for (int round = 0; round < 20; ++round) {
+    Tally tally(400, 2394, 1e-4);
+    for (const int vote : Shuffled(population, random)) {
+      tally.Add(vote);
+      if (tally.ConfidentBut(std::vector<int>{7, 9})) break;
+    }
+    EXPECT_FALSE(tally.Confident());
+    read += tally.read() / 20.0;
+  }
+  EXPECT_LT(read, 160);
+}
+
 TEST(Tally, ReadsFewVotesWhereTheWinnerIsClear) {
   std::vector<int> population(500, 4);
   population[7] = 3000;  // 3,000 votes for one label, 1,996 spread over the rest
