@@ -9,13 +9,15 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
+#include "recollect/wnn/blur.h"
 #include "recollect/wnn/invariant.h"
 #include "recollect/wnn/kernel.h"
 
 namespace recollect::wnn {
 namespace {
 
-constexpr int kStrip = 91;  // rows
+constexpr int kStrip = 16;   // rows that a thread takes at a time
+constexpr int kGrain = 256;  // neurons
 
 // The blurring kernel of a window `width` pixels wide.
 double BlurScale(int width) { return width / 640.0; }
@@ -44,6 +46,7 @@ struct Encoder::State {
   std::vector<std::int32_t> offsets;  // neurons x kSynapses, into values
   std::vector<std::int32_t> values;   // the sharp window, then the blurred one
   cv::Mat kept, window, blurred;
+  std::optional<Blur> blur;
   std::optional<InvariantEncoder> invariant;  // takes the place of all that, where wanted
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
@@ -55,6 +58,11 @@ struct Encoder::State {
     const int uniform = kSynapses - options.gaussian_synapses;
     const int area = synapses.window_width() * synapses.window_height();
     values.resize(static_cast<std::size_t>(options.blur ? 2 * area : area));
+    if (options.blur) {
+      const int w = synapses.window_width(), h = synapses.window_height();
+      blur.emplace(w, h, BlurSize(options, w), options.blur_sigma * BlurScale(w),
+                   (h + kStrip - 1) / kStrip);
+    }
     for (int n = 0; n < synapses.neurons(); ++n) {
       for (int i = 0; i < kSynapses; ++i) {
         const Pixel pixel = synapses.Of(n)[i];
@@ -64,16 +72,21 @@ struct Encoder::State {
     }
   }
 
+  // Messages are written in case of need only: writing them allocates.
   void Check(const ImageView& image) const {
     const int width = synapses.window_width();
-    Require(image.data && image.width == width && image.height == image_height, "image",
-            fmt::format("{} x {} pixels where the network looks at {} x {}", image.width,
-                        image.height, width, image_height),
-            "scale it, or make an encoder for its size");
-    Require((image.channels == 1 || image.channels == 3) &&
-                image.stride >= std::ptrdiff_t{image.width} * image.channels,
-            "image", fmt::format("{} channels with a stride of {}", image.channels, image.stride),
-            "give 1 or 3 channels of 8 bits");
+    if (!image.data || image.width != width || image.height != image_height) {
+      throw Error("image",
+                  fmt::format("{} x {} pixels where the network looks at {} x {}", image.width,
+                              image.height, width, image_height),
+                  "scale it, or make an encoder for its size");
+    }
+    if ((image.channels != 1 && image.channels != 3) ||
+        image.stride < std::ptrdiff_t{image.width} * image.channels) {
+      throw Error("image",
+                  fmt::format("{} channels with a stride of {}", image.channels, image.stride),
+                  "give 1 or 3 channels of 8 bits");
+    }
   }
 
   static cv::Mat Whole(const ImageView& image) {
@@ -101,22 +114,22 @@ struct Encoder::State {
     }
   }
 
-  // Codes the window, and its blurred copy behind it, in strips: they are cut the same way whatever
-  // the number of threads.
+  // Codes the window, and its blurred copy behind it. Bodies of loops carry one or two pointers
+  // only: larger ones would make the pool allocate.
   void CodeWindow() {
-    const int width = window.cols, size = BlurSize(options, width);
-    const double sigma = options.blur_sigma * BlurScale(width);
-    std::int32_t* const coded_blurred = values.data() + values.size() / 2;
     if (options.blur) blurred.create(window.size(), window.type());
-    pool.For(window.rows, kStrip, [&](std::int64_t begin, std::int64_t end) {
-      const cv::Range strip(static_cast<int>(begin), static_cast<int>(end));
-      CodeRows(window, strip, values.data());
-      if (!options.blur) return;
-      cv::Mat to = blurred.rowRange(strip);
-      cv::GaussianBlur(window.rowRange(strip), to, cv::Size(size, size), sigma, 0,
-                       cv::BORDER_REFLECT_101);
-      CodeRows(blurred, strip, coded_blurred);
+    pool.For(window.rows, kStrip, [this](std::int64_t begin, std::int64_t end) {
+      CodeStrip({static_cast<int>(begin), static_cast<int>(end)});
     });
+  }
+
+  void CodeStrip(cv::Range strip) {
+    CodeRows(window, strip, values.data());
+    if (!options.blur) return;
+    for (int y = strip.start; y < strip.end; ++y) {
+      blur->Row(*Kernels().front(), window, y, strip.start / kStrip, blurred.ptr(y));
+    }
+    CodeRows(blurred, strip, values.data() + values.size() / 2);
   }
 
   void CodeRows(const cv::Mat& from, cv::Range rows, std::int32_t* to) const {
@@ -143,19 +156,21 @@ std::size_t Encoder::pattern_words() const {
 void Encoder::Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift) {
   State& state = *state_;
   state.Check(image);
-  Require(pattern.size() == pattern_words(), "pattern",
-          fmt::format("room for {} words where {} are written", pattern.size(), pattern_words()));
+  if (pattern.size() != pattern_words()) {
+    throw Error("pattern", fmt::format("room for {} words where {} are written", pattern.size(),
+                                       pattern_words()));
+  }
   if (state.invariant) {
     state.invariant->Look(State::Whole(image), shift);
     return state.invariant->Encode(shift, pattern);
   }
   state.Look(image, shift);
   state.CodeWindow();
-  const Kernel& kernel = *Kernels().front();
-  state.pool.For(state.synapses.neurons(), 256, [&](std::int64_t begin, std::int64_t end) {
-    kernel.cells(state.values.data(), state.offsets.data(), static_cast<int>(begin),
-                 static_cast<int>(end), pattern.data());
-  });
+  state.pool.For(state.synapses.neurons(), kGrain,
+                 [&state, words = pattern.data()](std::int64_t begin, std::int64_t end) {
+                   Kernels().front()->cells(state.values.data(), state.offsets.data(),
+                                            static_cast<int>(begin), static_cast<int>(end), words);
+                 });
 }
 
 std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) {

@@ -32,6 +32,13 @@ struct ScanQuery {
   Answer* answers = nullptr;
 };
 
+// The taps of a blurring kernel, the same in both directions. Weights are 256ths and sum to 256, so
+// that nothing is rounded but the result.
+struct BlurTaps {
+  const std::uint16_t* weights = nullptr;
+  int count = 0;  // odd
+};
+
 // The inner loops for one instruction set. All of them give the same results.
 struct Kernel {
   std::string_view name;
@@ -39,6 +46,12 @@ struct Kernel {
   // offsets: where in `values` each synapse looks, neurons x kSynapses. pattern: neurons x kWords.
   void (*cells)(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                 std::uint64_t* pattern);
+  // sums[x] = sum over taps of weight * rows[tap][x], less 2^15, for x in [0, count)
+  void (*blur_columns)(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
+                       std::int16_t* sums);
+  // out[x] = sum over taps of weight * (sums[x + tap * stride] + 2^15) / 2^16, rounded
+  void (*blur_row)(const BlurTaps& taps, const std::int16_t* sums, int stride, int count,
+                   std::uint8_t* out);
   // Improves the answers of neurons [begin, end) by one entry.
   void (*probe)(const ScanEntry& entry, const ScanQuery& query, int begin, int end);
   // Improves the answers of neurons [begin, end) by the block's allowed frames. Reads the second

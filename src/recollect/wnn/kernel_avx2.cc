@@ -108,11 +108,64 @@ AVX2 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count,
   }
 }
 
+AVX2 void BlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
+                      std::int16_t* sums) {
+  constexpr int kLanes = 16, kParts = 2, kStep = kParts * kLanes;
+  int x = 0;
+  for (; x + kStep <= count; x += kStep) {
+    __m256i sum[kParts];
+    for (__m256i& part : sum) part = _mm256_set1_epi16(-0x8000);
+    for (int tap = 0; tap < taps.count; ++tap) {
+      const __m256i weight = _mm256_set1_epi16(static_cast<short>(taps.weights[tap]));
+      for (int i = 0; i < kParts; ++i) {
+        const __m256i words = _mm256_cvtepu8_epi16(
+            _mm_loadu_si128(reinterpret_cast<const __m128i*>(rows[tap] + x + kLanes * i)));
+        sum[i] = _mm256_add_epi16(sum[i], _mm256_mullo_epi16(words, weight));
+      }
+    }
+    for (int i = 0; i < kParts; ++i) {
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(sums + x + kLanes * i), sum[i]);
+    }
+  }
+  PlainBlurColumns(taps, rows, x, count, sums);
+}
+
+// Pairs of taps are multiplied and added at once.
+AVX2 void BlurRow(const BlurTaps& taps, const std::int16_t* sums, int stride, int count,
+                  std::uint8_t* out) {
+  constexpr int kLanes = 16, kParts = 2, kStep = kParts * kLanes;
+  int x = 0;
+  for (; x + kStep <= count; x += kStep) {
+    __m256i low[kParts], high[kParts];
+    for (int i = 0; i < kParts; ++i) low[i] = high[i] = _mm256_set1_epi32(kBlurOffset);
+    for (int tap = 0; tap < taps.count; tap += 2) {
+      const __m256i weights = _mm256_set1_epi32(TwoWeights(taps, tap));
+      const std::int16_t* const first = sums + x + tap * stride;
+      const std::int16_t* const second = tap + 1 < taps.count ? first + stride : first;
+      for (int i = 0; i < kParts; ++i) {
+        const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(first + kLanes * i));
+        const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(second + kLanes * i));
+        low[i] = _mm256_add_epi32(low[i], _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), weights));
+        high[i] =
+            _mm256_add_epi32(high[i], _mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), weights));
+      }
+    }
+    for (int i = 0; i < kParts; ++i) {
+      const __m256i whole =
+          _mm256_packs_epi32(_mm256_srai_epi32(low[i], 16), _mm256_srai_epi32(high[i], 16));
+      const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packus_epi16(whole, whole), 0x08);
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(out + x + kLanes * i),
+                       _mm256_castsi256_si128(bytes));
+    }
+  }
+  PlainBlurRow(taps, sums + x, stride, count - x, out + x);
+}
+
 AVX2 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"avx2", Cells, Probe, Scan, ScanBatch};
+constexpr Kernel kKernel = {"avx2", Cells, BlurColumns, BlurRow, Probe, Scan, ScanBatch};
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 #include "recollect/wnn/kernel_common.h"
 
-#define AVX512 __attribute__((target("avx512f,avx512vpopcntdq,popcnt,bmi")))
+#define AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,avx512vpopcntdq,popcnt,bmi")))
 
 namespace recollect::wnn {
 namespace {
@@ -145,11 +145,63 @@ AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int coun
   }
 }
 
+AVX512 void BlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
+                        std::int16_t* sums) {
+  constexpr int kLanes = 32, kParts = 2, kStep = kParts * kLanes;
+  int x = 0;
+  for (; x + kStep <= count; x += kStep) {
+    __m512i sum[kParts];
+    for (__m512i& part : sum) part = _mm512_set1_epi16(-0x8000);
+    for (int tap = 0; tap < taps.count; ++tap) {
+      const __m512i weight = _mm512_set1_epi16(static_cast<short>(taps.weights[tap]));
+      for (int i = 0; i < kParts; ++i) {
+        const __m512i words = _mm512_cvtepu8_epi16(
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(rows[tap] + x + kLanes * i)));
+        sum[i] = _mm512_add_epi16(sum[i], _mm512_mullo_epi16(words, weight));
+      }
+    }
+    for (int i = 0; i < kParts; ++i) {
+      _mm512_storeu_si512(sums + x + kLanes * i, sum[i]);
+    }
+  }
+  PlainBlurColumns(taps, rows, x, count, sums);
+}
+
+// Pairs of taps are multiplied and added at once.
+AVX512 void BlurRow(const BlurTaps& taps, const std::int16_t* sums, int stride, int count,
+                    std::uint8_t* out) {
+  constexpr int kLanes = 32, kParts = 2, kStep = kParts * kLanes;
+  int x = 0;
+  for (; x + kStep <= count; x += kStep) {
+    __m512i low[kParts], high[kParts];
+    for (int i = 0; i < kParts; ++i) low[i] = high[i] = _mm512_set1_epi32(kBlurOffset);
+    for (int tap = 0; tap < taps.count; tap += 2) {
+      const __m512i weights = _mm512_set1_epi32(TwoWeights(taps, tap));
+      const std::int16_t* const first = sums + x + tap * stride;
+      const std::int16_t* const second = tap + 1 < taps.count ? first + stride : first;
+      for (int i = 0; i < kParts; ++i) {
+        const __m512i a = _mm512_loadu_si512(first + kLanes * i);
+        const __m512i b = _mm512_loadu_si512(second + kLanes * i);
+        low[i] = _mm512_add_epi32(low[i], _mm512_madd_epi16(_mm512_unpacklo_epi16(a, b), weights));
+        high[i] =
+            _mm512_add_epi32(high[i], _mm512_madd_epi16(_mm512_unpackhi_epi16(a, b), weights));
+      }
+    }
+    for (int i = 0; i < kParts; ++i) {
+      const __m512i whole =
+          _mm512_packs_epi32(_mm512_srai_epi32(low[i], 16), _mm512_srai_epi32(high[i], 16));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + x + kLanes * i),
+                          _mm512_cvtepi16_epi8(whole));
+    }
+  }
+  PlainBlurRow(taps, sums + x, stride, count - x, out + x);
+}
+
 AVX512 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"avx512", Cells, Probe, Scan, ScanBatch};
+constexpr Kernel kKernel = {"avx512", Cells, BlurColumns, BlurRow, Probe, Scan, ScanBatch};
 
 }  // namespace
 

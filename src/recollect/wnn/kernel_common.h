@@ -32,4 +32,16 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
 void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                 std::uint64_t* pattern);
 
+// Kernel::blur_columns for x in [begin, count), and blur_row, in plain C++: the others' tails.
+inline constexpr int kBlurBias = 1 << 15;
+inline constexpr int kBlurOffset = 256 * kBlurBias + (1 << 15);  // of the square, and to round
+void PlainBlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int begin, int count,
+                      std::int16_t* sums);
+void PlainBlurRow(const BlurTaps& taps, const std::int16_t* sums, int stride, int count,
+                  std::uint8_t* out);
+// The weights of two taps side by side; the one after the last has none.
+inline int TwoWeights(const BlurTaps& taps, int tap) {
+  return taps.weights[tap] | (tap + 1 < taps.count ? taps.weights[tap + 1] << 16 : 0);
+}
+
 }  // namespace recollect::wnn

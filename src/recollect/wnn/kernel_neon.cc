@@ -64,11 +64,16 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
   }
 }
 
+void BlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
+                 std::int16_t* sums) {
+  PlainBlurColumns(taps, rows, 0, count, sums);
+}
+
 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"neon", PlainCells, Probe, Scan, ScanBatch};
+constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns, PlainBlurRow, Probe, Scan, ScanBatch};
 
 }  // namespace
 

@@ -22,6 +22,24 @@ void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int beg
   }
 }
 
+void PlainBlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int begin, int count,
+                      std::int16_t* sums) {
+  for (int x = begin; x < count; ++x) {
+    int sum = 0;
+    for (int tap = 0; tap < taps.count; ++tap) sum += rows[tap][x] * taps.weights[tap];
+    sums[x] = static_cast<std::int16_t>(sum - kBlurBias);
+  }
+}
+
+void PlainBlurRow(const BlurTaps& taps, const std::int16_t* sums, int stride, int count,
+                  std::uint8_t* out) {
+  for (int x = 0; x < count; ++x) {
+    int sum = kBlurOffset;
+    for (int tap = 0; tap < taps.count; ++tap) sum += sums[x + tap * stride] * taps.weights[tap];
+    out[x] = static_cast<std::uint8_t>(sum >> 16);
+  }
+}
+
 namespace {
 
 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
@@ -50,12 +68,18 @@ void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int count, int 
   }
 }
 
+void BlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
+                 std::int16_t* sums) {
+  PlainBlurColumns(taps, rows, 0, count, sums);
+}
+
 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
 }  // namespace
 
-const Kernel kPlainKernel = {"plain", PlainCells, Probe, Scan, ScanBatch};
+const Kernel kPlainKernel = {"plain", PlainCells, BlurColumns, PlainBlurRow,
+                             Probe,   Scan,       ScanBatch};
 
 }  // namespace recollect::wnn
