@@ -103,6 +103,7 @@ void AddBench(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   search->add_flag("--fatfast,!--no-fatfast", options.fat_fast, "measure Fat-Fast VG-RAM, too");
+  search->add_flag("--plain,!--no-plain", options.plain, "measure the plain kernel, too");
   search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");
   AddWnnFlags(*search, options.corpus.network);
   AddPipeline(*bench);

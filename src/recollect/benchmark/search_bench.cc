@@ -198,7 +198,7 @@ json RunSearchBench(const SearchBenchOptions& options, const ProgressSink& progr
   search("exact_ms", {.tie_seed = seed});
   race.Add("exact_batch8_ms", 8,
            [&](int i) { wnn::RecollectBatch(memory, batch(i), pool, {.tie_seed = seed}); });
-  search("plain_ms", {.tie_seed = seed, .kernel = &wnn::kPlainKernel});
+  if (options.plain) search("plain_ms", {.tie_seed = seed, .kernel = &wnn::kPlainKernel});
   search("certified_ms", {.stop = Stop::kCertain, .tie_seed = seed});
   search("anytime_ms",
          {.stop = Stop::kConfident, .error_bound = options.error_bound, .tie_seed = seed});

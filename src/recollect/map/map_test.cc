@@ -130,6 +130,23 @@ TEST_F(MapTest, GrowsByAppending) {
   ExpectHolds(before, {laps[0]});  // an open reader keeps its own state
 }
 
+// What was in the file stays where it was: appending costs the same in a map of any size.
+TEST_F(MapTest, AppendingDoesNotRewriteTheRest) {
+  const fs::path file = folder_ / "m.map";
+  const std::vector<Lap> first = {MakeLap("one", 200)}, second = {MakeLap("two", 3)};
+  CreateMap(file, first, options_, pool_);
+  const std::string before = ReadFile(file);
+  AddToMap(file, second, pool_);
+  const std::string after = ReadFile(file);
+  ASSERT_GE(after.size(), before.size());
+  constexpr std::size_t kPage = 4096;
+  std::size_t changed = 0;
+  for (std::size_t at = 0; at < before.size(); at += kPage) {
+    changed += before.compare(at, kPage, after, at, kPage) != 0;
+  }
+  EXPECT_LT(static_cast<double>(changed), 0.1 * static_cast<double>(before.size()) / kPage);
+}
+
 TEST_F(MapTest, KeepsGeometryBesideItsKeyFramesWhereThereIsSome) {
   const fs::path plain = folder_ / "plain.map", shaped = folder_ / "shaped.map";
   const std::vector<Lap> first = {MakeLap("a", 20)}, second = {MakeLap("b", 3)};

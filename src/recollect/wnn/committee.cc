@@ -10,20 +10,17 @@ namespace recollect::wnn {
 
 Recollection CountVotes(std::span<const int> labels, std::vector<Answer> answers) {
   Recollection result;
-  std::vector<int> votes;  // the labels of all who answered
-  votes.reserve(answers.size());
+  std::vector<int> votes;  // by label
   for (const Answer answer : answers) {
-    if (answer != kNoAnswer) {
-      votes.push_back(labels[static_cast<std::size_t>(AnswerEntry(answer))]);
-    }
+    if (answer == kNoAnswer) continue;
+    ++result.neurons_read;
+    const auto label =
+        static_cast<std::size_t>(labels[static_cast<std::size_t>(AnswerEntry(answer))]);
+    if (label >= votes.size()) votes.resize(std::max(label + 1, 2 * votes.size()), 0);
+    ++votes[label];
   }
-  result.neurons_read = static_cast<int>(votes.size());
-  std::sort(votes.begin(), votes.end());
-  for (const int label : votes) {
-    if (result.histogram.empty() || result.histogram.back().label != label) {
-      result.histogram.push_back({label, 0});
-    }
-    ++result.histogram.back().votes;
+  for (std::size_t label = 0; label < votes.size(); ++label) {
+    if (votes[label] > 0) result.histogram.push_back({static_cast<int>(label), votes[label]});
   }
   std::stable_sort(result.histogram.begin(), result.histogram.end(),
                    [](const LabelVotes& a, const LabelVotes& b) { return a.votes > b.votes; });
