@@ -107,6 +107,7 @@ double OpenMilliseconds(const wnn::Memory& memory) {
     times.push_back(watch.Milliseconds());
   }
   std::filesystem::remove(file);
+  std::filesystem::remove(file.string() + "-lock");
   std::sort(times.begin(), times.end());
   return times[times.size() / 2];
 }
