@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recollect/core/random.h"
+#include "recollect/simulation/packet.h"
 
 namespace recollect::simulation {
 namespace {
@@ -24,38 +25,62 @@ const std::array<float, 4096>& Bells() {
   return bells;
 }
 
+using Planes = std::array<std::vector<float>, 3>;
+
 // Averages each pixel along the path that its point takes in the image during the exposure.
-std::vector<Color> Blur(const Rendering& r, const PinholeCamera& camera,
-                        const SE3& start_from_end) {
-  std::vector<Color> out = r.radiance;
+Planes Blur(const Rendering& r, const PinholeCamera& camera, const SE3& start_from_end) {
+  Planes out = r.light;
   const SE3 end_from_start = start_from_end.Inverse();
+  const Eigen::Matrix3f R = end_from_start.rotation().cast<float>();
+  const Eigen::Vector3f t = end_from_start.translation().cast<float>();
+  const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+  const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
   for (int by = 0; by < r.height; by += kBlock) {
     for (int bx = 0; bx < r.width; bx += kBlock) {
-      const int cx = std::min(bx + kBlock / 2, r.width - 1),
-                cy = std::min(by + kBlock / 2, r.height - 1);
-      const float depth = r.Depth(cx, cy);
-      const Eigen::Vector3d p =
-          camera.Unproject(cx, cy, depth > 0 ? static_cast<double>(depth) : 1e5);
-      const Eigen::Vector3d q = end_from_start * p;
-      if (q.z() < 0.1) continue;
-      const Eigen::Vector2f move = (camera.Project(q) - Eigen::Vector2d(cx, cy)).cast<float>();
-      const int taps = std::min(kMostTaps, static_cast<int>(move.norm() + 0.5F) + 1);
+      const int mx = std::min(bx + kBlock / 2, r.width - 1),
+                my = std::min(by + kBlock / 2, r.height - 1);
+      const float depth = r.Depth(mx, my) > 0 ? r.Depth(mx, my) : 1e5F;
+      const float x0 = static_cast<float>(mx) - cx, y0 = static_cast<float>(my) - cy;
+      const Eigen::Vector3f q = R * Eigen::Vector3f(x0 / fx, y0 / fy, 1) + t / depth;
+      if (q.z() * depth < 0.1F) continue;
+      const float dx = fx * q.x() / q.z() - x0, dy = fy * q.y() / q.z() - y0;
+      const int taps =
+          static_cast<int>(std::min(float{kMostTaps}, std::sqrt(dx * dx + dy * dy) + 1.5F));
       if (taps < 2) continue;
-      std::array<std::array<int, 2>, kMostTaps> path;
-      for (int k = 0; k < taps; ++k) {
-        const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(taps) - 0.5F;
-        path[static_cast<std::size_t>(k)] = {static_cast<int>(std::lround(t * move.x())),
-                                             static_cast<int>(std::lround(t * move.y()))};
+      std::array<int, kMostTaps> shift_x, shift_y;
+      int low_x = bx, high_x = bx + kBlock, low_y = by, high_y = by + kBlock;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(taps); ++k) {
+        const float s = (static_cast<float>(k) + 0.5F) / static_cast<float>(taps) - 0.5F;
+        shift_x[k] = static_cast<int>(std::lround(s * dx));
+        shift_y[k] = static_cast<int>(std::lround(s * dy));
+        low_x = std::min(low_x, bx + shift_x[k]);
+        high_x = std::max(high_x, bx + kBlock + shift_x[k]);
+        low_y = std::min(low_y, by + shift_y[k]);
+        high_y = std::max(high_y, by + kBlock + shift_y[k]);
       }
+      const bool inside = low_x >= 0 && low_y >= 0 && high_x <= r.width && high_y <= r.height;
+      const float share = 1 / static_cast<float>(taps);
       for (int y = by; y < std::min(by + kBlock, r.height); ++y) {
-        for (int x = bx; x < std::min(bx + kBlock, r.width); ++x) {
-          Color sum = Color::Zero();
-          for (int k = 0; k < taps; ++k) {
-            const int sx = x + path[static_cast<std::size_t>(k)][0];
-            const int sy = y + path[static_cast<std::size_t>(k)][1];
-            sum += r.At(std::clamp(sx, 0, r.width - 1), std::clamp(sy, 0, r.height - 1));
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float* plane = r.light[c].data();
+          if (inside) {
+            std::array<float, kBlock> sum{};
+            for (std::size_t k = 0; k < static_cast<std::size_t>(taps); ++k) {
+              const float* from = plane + r.Index(bx + shift_x[k], y + shift_y[k]);
+              for (std::size_t x = 0; x < kBlock; ++x) sum[x] += from[x];
+            }
+            float* to = &out[c][r.Index(bx, y)];
+            for (std::size_t x = 0; x < kBlock; ++x) to[x] = sum[x] * share;
+            continue;
           }
-          out[r.Index(x, y)] = sum / static_cast<float>(taps);
+          for (int x = bx; x < std::min(bx + kBlock, r.width); ++x) {
+            float sum = 0;
+            for (std::size_t k = 0; k < static_cast<std::size_t>(taps); ++k) {
+              sum += plane[r.Index(std::clamp(x + shift_x[k], 0, r.width - 1),
+                                   std::clamp(y + shift_y[k], 0, r.height - 1))];
+            }
+            out[c][r.Index(x, y)] = sum * share;
+          }
         }
       }
     }
@@ -79,43 +104,42 @@ Film LoadFilm(const Day& day) {
 
 cv::Mat Develop(const Rendering& r, const PinholeCamera& camera, const SE3& start_from_end,
                 const Film& film, std::uint64_t seed, float extra_gain) {
-  const std::vector<Color> light = Blur(r, camera, start_from_end);
+  const Planes light = Blur(r, camera, start_from_end);
   double sum = 0;
-  for (const Color& c : light) sum += static_cast<double>(std::min(2.5F, c.mean()));
-  const double mean = sum / static_cast<double>(light.size());
+  for (std::size_t i = 0; i < light[0].size(); ++i) {
+    sum += static_cast<double>(std::min(7.5F, light[0][i] + light[1][i] + light[2][i]));
+  }
+  const double mean = sum / 3 / static_cast<double>(light[0].size());
   const float gain = extra_gain * static_cast<float>(std::min(
                                       static_cast<double>(film.longest_gain),
                                       static_cast<double>(film.brightness) / std::max(mean, 1e-6)));
   constexpr int kTones = 4096;
-  std::array<std::uint8_t, kTones + 1> tone{};
-  std::array<float, kTones + 1> noise{};  // its standard deviation
+  std::array<std::int32_t, kTones + 1> tone{};
   for (int i = 0; i <= kTones; ++i) {
     const float v = static_cast<float>(i) / kTones;
     tone[static_cast<std::size_t>(i)] =
-        static_cast<std::uint8_t>(std::lround(255 * std::pow(v, 1 / film.gamma)));
-    noise[static_cast<std::size_t>(i)] =
-        std::sqrt(film.read_noise * film.read_noise + film.shot_noise * film.shot_noise * v);
+        static_cast<std::int32_t>(std::lround(255 * std::pow(v, 1 / film.gamma)));
   }
-  const auto& bells = Bells();
-  const Color scale = film.white_balance * gain;
   const float half = static_cast<float>(std::hypot(r.width, r.height)) / 2;
+  const PacketKernel& kernel = *PacketKernels().front();
   cv::Mat3b image(r.height, r.width);
+  FilmRow row{};
+  row.width = r.width;
+  row.across = 1 / half;
+  row.vignette = film.vignette;
+  row.read_noise = film.read_noise * film.read_noise;
+  row.shot_noise = film.shot_noise * film.shot_noise;
+  row.bells = Bells().data();
+  row.tone = tone.data();
   for (int y = 0; y < r.height; ++y) {
-    for (int x = 0; x < r.width; ++x) {
-      const float dx = (static_cast<float>(x) - static_cast<float>(r.width) / 2) / half;
-      const float dy = (static_cast<float>(y) - static_cast<float>(r.height) / 2) / half;
-      const Color c = light[r.Index(x, y)] * scale * (1 - film.vignette * (dx * dx + dy * dy));
-      cv::Vec3b& pixel = image(y, x);
-      const std::uint64_t grain = SubSeed(seed, r.Index(x, y));
-      for (int k = 0; k < 3; ++k) {
-        // Highlights bend over softly towards white; then photons and electronics add their noise.
-        const float v = std::min(1.0F, c[k] * 1.2F / (1 + 0.35F * c[k]));
-        const float noisy = v + bells[(grain >> (16 * k)) % bells.size()] *
-                                    noise[static_cast<std::size_t>(v * kTones)];
-        const int level = static_cast<int>(std::clamp(noisy, 0.0F, 1.0F) * kTones);
-        pixel[2 - k] = tone[static_cast<std::size_t>(level)];
-      }
+    for (std::size_t c = 0; c < 3; ++c) {
+      row.light[c] = &light[c][r.Index(0, y)];
+      row.scale[c] = film.white_balance[static_cast<Eigen::Index>(c)] * gain;
     }
+    row.along = (static_cast<float>(y) - static_cast<float>(r.height) / 2) / half;
+    row.seed = static_cast<std::uint32_t>(SubSeed(seed, static_cast<std::uint64_t>(y)));
+    row.out = image.ptr<std::uint8_t>(y);
+    kernel.develop(row);
   }
   return image;
 }

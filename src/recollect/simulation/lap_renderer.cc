@@ -15,7 +15,7 @@ LapRenderer::LapRenderer(const Campus& campus, const PictureSet& pictures, const
       car_from_camera_(UfesCarFromCamera()),
       campus_day_(BuildCampus(campus, day)),
       scene_(campus_day_.world, pictures),
-      sky_(day, pictures),
+      sky_(day),
       film_(LoadFilm(day)),
       traffic_(campus, campus_day_.vehicles, day, drive) {
   camera_.baseline = options.baseline;

@@ -60,7 +60,17 @@ PictureSet::PictureSet(ThreadPool& pool) {
       painted[static_cast<std::size_t>(i)] = PaintPicture(static_cast<int>(i));
     }
   });
-  for (auto& texture : painted) textures_.push_back(std::move(*texture));
+  starts_.resize((kPictures + 1) * kTextureLevels);
+  for (std::size_t i = 0; i < painted.size(); ++i) {
+    Texture& texture = textures_.emplace_back(std::move(*painted[i]));
+    const std::vector<std::uint32_t> texels = texture.TakeTexels();
+    for (int level = 0; level < texture.levels(); ++level) {
+      starts_[i * kTextureLevels + static_cast<std::size_t>(level)] =
+          static_cast<std::int32_t>(texels_.size() + texture.start(level));
+    }
+    log_sizes_.push_back(texture.levels() - 1);
+    texels_.insert(texels_.end(), texels.begin(), texels.end());
+  }
 }
 
 }  // namespace recollect::simulation

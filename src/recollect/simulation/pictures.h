@@ -4,6 +4,7 @@
 
 #include "recollect/core/parallel.h"
 #include "recollect/simulation/material.h"
+#include "recollect/simulation/packet.h"
 #include "recollect/simulation/texture.h"
 
 namespace recollect::simulation {
@@ -17,11 +18,15 @@ class PictureSet {
   const Texture& operator[](Picture picture) const {
     return textures_[static_cast<std::size_t>(picture)];
   }
-  // Slow noise in [0, 1] for variation over large surfaces; tiles.
-  const Texture& variation() const { return textures_.back(); }
+  // All of them for shading; the last is slow noise for variation over large surfaces.
+  TextureView view() const {
+    return {texels_.data(), starts_.data(), log_sizes_.data(), kPictures};
+  }
 
  private:
   std::vector<Texture> textures_;
+  std::vector<std::uint32_t> texels_;
+  std::vector<std::int32_t> starts_, log_sizes_;
 };
 
 // Sheets of pictures hold this many columns and rows of equal cells.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "recollect/geometry/camera.h"
@@ -12,10 +13,9 @@ namespace recollect::simulation {
 // What a perfect camera would see: no exposure, no noise.
 struct Rendering {
   int width = 0, height = 0;
-  std::vector<Color> radiance;  // linear, row by row
-  std::vector<float> depth;     // metres along the camera's z axis at the pixel's centre; 0: sky
+  std::array<std::vector<float>, 3> light;  // R, G, B; linear, row by row
+  std::vector<float> depth;  // metres along the camera's z axis at the pixel's centre; 0: sky
 
-  const Color& At(int x, int y) const { return radiance[Index(x, y)]; }
   float Depth(int x, int y) const { return depth[Index(x, y)]; }
   std::size_t Index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recollect/core/error.h"
+#include "recollect/simulation/shading.h"
 
 namespace recollect::simulation {
 namespace {
@@ -65,12 +66,11 @@ Scene::Scene(const World& world, const PictureSet& pictures) : world_(world), pi
   device_ = rtcNewDevice("threads=1,set_affinity=0");
   Require(device_ != nullptr, "Embree", "the ray tracer does not start");
   for (const Model& model : world.models) {
-    models_.push_back(Commit(model.solid, model.cutout, {}));
+    models_.push_back(Commit(model.solid, model.cutout, {}, false));
   }
-  for (const Instance& instance : world.instances) instances_.emplace_back(instance);
   // All that stands is one tree of quads: rays would visit the boxes of instances, which overlap
   // where crowns do, one after the other.
-  scene_ = Commit(world.solid, world.cutout, instances_);
+  scene_ = Commit(world.solid, world.cutout, world.instances, true);
   cutout_ = layers_.back().get();
   solid_ = layers_[layers_.size() - 2].get();
   Require(rtcGetDeviceError(device_) == RTC_ERROR_NONE, "Embree", "building the scene failed");
@@ -84,13 +84,13 @@ Scene::~Scene() {
 
 // A scene of two meshes and of copies of models. Empty meshes keep their number.
 RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout,
-                       const std::vector<PlacedInstance>& instances) {
+                       const std::vector<Instance>& instances, bool standing) {
   const RTCScene scene = rtcNewScene(device_);
-  if (!instances.empty()) rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  if (standing) rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   for (const unsigned id : {kSolid, kCutout}) {
     std::vector<std::pair<const Mesh*, int>> parts = {{id == kSolid ? &solid : &cutout, -1}};
     for (std::size_t i = 0; i < instances.size(); ++i) {
-      const Model& model = world_.models.at(static_cast<std::size_t>(instances[i].instance.model));
+      const Model& model = world_.models.at(static_cast<std::size_t>(instances[i].model));
       parts.emplace_back(id == kSolid ? &model.solid : &model.cutout, static_cast<int>(i));
     }
     std::size_t vertices = 0, quads = 0;
@@ -100,7 +100,11 @@ RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout,
     }
     layers_.push_back(std::make_unique<Layer>());
     Layer& layer = *layers_.back();
-    layer.sources.reserve(quads);
+    std::vector<SurfaceRecord>& records = records_[id];
+    if (standing) {
+      layer.sources.reserve(quads);
+      records.reserve(quads);
+    }
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
     if (quads > 0) {
       // Embree pads the buffer: it reads vertices sixteen bytes at a time.
@@ -111,15 +115,19 @@ RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout,
       std::uint32_t base = 0;
       for (const auto& [mesh, i] : parts) {
         const Eigen::Affine3f place =
-            i < 0
-                ? Eigen::Affine3f::Identity()
-                : Eigen::Affine3f(instances[static_cast<std::size_t>(i)].instance.world_from_model);
+            i < 0 ? Eigen::Affine3f::Identity()
+                  : Eigen::Affine3f(instances[static_cast<std::size_t>(i)].world_from_model);
         const float scale = place.linear().col(0).norm();
         for (const Vec3& v : mesh->vertices) *vertex++ = i < 0 ? v : Vec3(place * v);
         for (std::uint32_t q = 0; q < mesh->quads.size(); ++q) {
           for (std::size_t k = 0; k < 4; ++k) (*quad)[k] = base + mesh->quads[q][k];
           ++quad;
-          layer.sources.push_back({i, q});
+          if (standing) {
+            layer.sources.push_back({i, q});
+            records.push_back(MakeRecord(world_.palette, *mesh, q,
+                                         i < 0 ? nullptr : &instances[static_cast<std::size_t>(i)],
+                                         i));
+          }
           if (id != kCutout) continue;
           const Surface& surface = mesh->surfaces[q];
           const Texture& texture = pictures_[world_.palette[surface.material].picture];
@@ -142,18 +150,23 @@ RTCScene Scene::Commit(const Mesh& solid, const Mesh& cutout,
   return scene;
 }
 
-RTCGeometry Scene::Place(const PlacedInstance& placed) const {
+RTCGeometry Scene::Place(const Instance& placed) const {
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry,
-                               models_.at(static_cast<std::size_t>(placed.instance.model)));
-  const Eigen::Matrix<float, 3, 4> matrix = placed.instance.world_from_model.matrix().topRows<3>();
+  rtcSetGeometryInstancedScene(geometry, models_.at(static_cast<std::size_t>(placed.model)));
+  const Eigen::Matrix<float, 3, 4> matrix = placed.world_from_model.matrix().topRows<3>();
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
+const Mesh& Scene::MeshOf(const Instance* placed, bool solid) const {
+  if (placed == nullptr) return solid ? world_.solid : world_.cutout;
+  const Model& model = world_.models[static_cast<std::size_t>(placed->model)];
+  return solid ? model.solid : model.cutout;
+}
+
 void Scene::Intersect(RTCRayHit16& rays, const int* valid, float spread, const Movers* movers,
-                      Hit* hits) const {
+                      SurfaceRecord* records) const {
   Context context(spread, kTogether);
   std::fill_n(rays.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(rays.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
@@ -164,29 +177,36 @@ void Scene::Intersect(RTCRayHit16& rays, const int* valid, float spread, const M
     Context apart(spread, kApart);
     rtcIntersect16(valid, movers->scene_, &apart.rtc, &rays);
   }
-  for (int i = 0; i < kPacket; ++i) {
-    hits[i] = {};
-    if (valid[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-    Hit& hit = hits[i];
-    hit.moving = rays.ray.tfar[i] < still[static_cast<std::size_t>(i)];
-    hit.quad = rays.hit.primID[i];
-    hit.u = rays.hit.u[i];
-    hit.v = rays.hit.v[i];
-    const bool solid = rays.hit.geomID[i] == kSolid;
-    if (hit.moving) {
-      hit.instance = static_cast<int>(rays.hit.instID[0][i]);
-    } else {
-      const Source& source = (solid ? solid_ : cutout_)->sources[hit.quad];
-      hit.instance = source.instance;
-      hit.quad = source.quad;
+  static constexpr SurfaceRecord kNothing = [] {
+    SurfaceRecord r{};
+    r.flags = SurfaceRecord::kSky;
+    return r;
+  }();
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    if (valid[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+      records[i] = kNothing;
+      continue;
     }
-    if (hit.instance < 0) {
-      hit.mesh = solid ? &world_.solid : &world_.cutout;
+    const unsigned id = rays.hit.geomID[i];
+    const bool solid = id == kSolid;
+    std::uint32_t quad = rays.hit.primID[i];
+    const Instance* placed = nullptr;
+    if (rays.ray.tfar[i] < still[i]) {
+      const auto number = rays.hit.instID[0][i];
+      placed = &movers->instances_[number];
+      records[i] =
+          MakeRecord(world_.palette, MeshOf(placed, solid), quad, placed, static_cast<int>(number));
     } else {
-      const auto& all = hit.moving ? movers->instances_ : instances_;
-      const auto model = all[static_cast<std::size_t>(hit.instance)].instance.model;
-      const Model& m = world_.models[static_cast<std::size_t>(model)];
-      hit.mesh = solid ? &m.solid : &m.cutout;
+      records[i] = records_[id][quad];
+      if ((records[i].flags & SurfaceRecord::kSmooth) == 0) continue;
+      const Source& source = (solid ? solid_ : cutout_)->sources[quad];
+      quad = source.quad;
+      if (source.instance >= 0) {
+        placed = &world_.instances[static_cast<std::size_t>(source.instance)];
+      }
+    }
+    if ((records[i].flags & SurfaceRecord::kSmooth) != 0) {
+      BendNormal(MeshOf(placed, solid), quad, rays.hit.u[i], rays.hit.v[i], placed, records[i]);
     }
   }
 }
@@ -203,8 +223,7 @@ void Scene::Occluded(RTCRay16& rays, const int* valid, const Movers* movers) con
   rtcOccluded16(open.data(), movers->scene_, &apart.rtc, &rays);
 }
 
-Movers::Movers(const Scene& scene, const std::vector<Instance>& instances) {
-  for (const Instance& instance : instances) instances_.emplace_back(instance);
+Movers::Movers(const Scene& scene, const std::vector<Instance>& instances) : instances_(instances) {
   scene_ = rtcNewScene(scene.device_);
   for (std::size_t i = 0; i < instances_.size(); ++i) {
     const RTCGeometry geometry = scene.Place(instances_[i]);

@@ -2,33 +2,15 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
+#include "recollect/simulation/packet.h"
 #include "recollect/simulation/pictures.h"
 #include "recollect/simulation/world.h"
 
 namespace recollect::simulation {
-
-// Rays are traced sixteen at a time.
-constexpr int kPacket = 16;
-
-// Where rays hit: mesh and quad, with the instance where the mesh is a model's.
-struct Hit {
-  const Mesh* mesh = nullptr;  // null: the sky
-  std::uint32_t quad = 0;
-  float u = 0, v = 0;  // bilinear place in the quad
-  int instance = -1;   // index into Scene::instances() or, if moving, Movers::instances()
-  bool moving = false;
-};
-
-// An instance with what shading needs of it.
-struct PlacedInstance {
-  Instance instance;
-  Eigen::Affine3f model_from_world;
-  explicit PlacedInstance(const Instance& i)
-      : instance(i), model_from_world(i.world_from_model.inverse()) {}
-};
 
 class Movers;
 
@@ -41,14 +23,12 @@ class Scene {
   Scene& operator=(const Scene&) = delete;
 
   // Nearest hits of the rays with valid[i] = -1 (0: not traced). `spread` is the width of a pixel
-  // at one metre; it chooses the detail of cut-outs. Fills hits[i] and rays.ray.tfar.
+  // at one metre; it chooses the detail of cut-outs. Fills rays.ray.tfar and records[i]: its flag
+  // kSky tells that nothing was hit.
   void Intersect(RTCRayHit16& rays, const int* valid, float spread, const Movers* movers,
-                 Hit* hits) const;
+                 SurfaceRecord* records) const;
   // Sets tfar < 0 where something solid lies between ray origin and tfar.
   void Occluded(RTCRay16& rays, const int* valid, const Movers* movers) const;
-
-  const World& world() const { return world_; }
-  const std::vector<PlacedInstance>& instances() const { return instances_; }
 
  private:
   friend class Movers;
@@ -59,9 +39,10 @@ class Scene {
     std::uint32_t quad;
   };
 
-  RTCScene Commit(const Mesh& solid, const Mesh& cutout,
-                  const std::vector<PlacedInstance>& instances);
-  RTCGeometry Place(const PlacedInstance& placed) const;
+  RTCScene Commit(const Mesh& solid, const Mesh& cutout, const std::vector<Instance>& instances,
+                  bool standing);
+  RTCGeometry Place(const Instance& placed) const;
+  const Mesh& MeshOf(const Instance* placed, bool solid) const;
 
   const World& world_;
   const PictureSet& pictures_;
@@ -69,8 +50,8 @@ class Scene {
   RTCScene scene_ = nullptr;
   std::vector<RTCScene> models_;
   std::vector<std::unique_ptr<Layer>> layers_;
-  const Layer *solid_ = nullptr, *cutout_ = nullptr;  // of what stands
-  std::vector<PlacedInstance> instances_;
+  const Layer *solid_ = nullptr, *cutout_ = nullptr;   // of what stands
+  std::array<std::vector<SurfaceRecord>, 2> records_;  // of all quads that stand
 };
 
 // What moves, at one moment: instances of the scene's models.
@@ -81,12 +62,10 @@ class Movers {
   Movers(const Movers&) = delete;
   Movers& operator=(const Movers&) = delete;
 
-  const std::vector<PlacedInstance>& instances() const { return instances_; }
-
  private:
   friend class Scene;
   RTCScene scene_ = nullptr;
-  std::vector<PlacedInstance> instances_;
+  std::vector<Instance> instances_;
 };
 
 }  // namespace recollect::simulation

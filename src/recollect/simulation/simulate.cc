@@ -89,7 +89,7 @@ std::string Describe(const SimulateOptions& o, const Route& route, const Drive& 
       Name(day.weather), std::asin(day.to_sun.z()) / kDegree, frames, o.spacing, o.every,
       route.origin_utm.x(), route.origin_utm.y(), c.strength, c.light, c.structures, c.traffic,
       c.season, o.baseline, o.rolling_shutter, o.jpeg_quality, o.stereo, o.depth, o.depth_step,
-      o.faults, o.seed, 2);
+      o.faults, o.seed, 3);
 }
 
 std::string Readme(const SimulateOptions& o, const Route& route) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace recollect::simulation {
@@ -26,21 +27,19 @@ class Texture {
 
   int size() const { return size_; }
 
-  // Colour averaged over a parallelogram-like footprint about (u, v): `minor` tiles wide across
-  // and (du, dv) tiles long along its major axis. Mixes mip levels, with up to three taps along the
-  // axis.
-  Color Sample(float u, float v, float minor, float du, float dv) const;
-
-  // Colour averaged over about `width` tiles, from one mip level: for slow noise.
-  Color Smooth(float u, float v, float width) const;
+  // The levels' texels as TextureView has them, level by level; the texture keeps none of them.
+  std::vector<std::uint32_t> TakeTexels() { return std::move(texels_); }
+  int levels() const { return levels_; }
+  // Where level l begins among the texels.
+  std::size_t start(int l) const { return starts_[static_cast<std::size_t>(l)]; }
 
   // Whether a cut-out texture is solid at (u, v), read at the given mip level (clamped).
   bool Solid(float u, float v, int level) const;
 
  private:
   int size_ = 0, levels_ = 0;
-  std::vector<std::size_t> offsets_, solid_offsets_;  // where each level begins
-  std::vector<std::uint8_t> rgba_;   // square roots of the colours, and alpha; padded to wrap
+  std::vector<std::size_t> starts_, solid_starts_;  // where each level begins
+  std::vector<std::uint32_t> texels_;
   std::vector<std::uint8_t> solid_;  // alpha alone, scaled to keep coverage in all levels
 };
 
