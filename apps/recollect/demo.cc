@@ -31,6 +31,7 @@ void RenderRing(const Options& options, const std::filesystem::path& folder) {
   simulated.laps = kDemoLaps;
   simulated.out = folder;
   simulated.depth = true;
+  simulated.change.strength = 1;
   simulated.seed = options.common.seed;
   simulated.threads = options.common.threads;
   simulation::Simulate(simulated, TerminalProgress());

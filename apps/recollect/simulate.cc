@@ -76,9 +76,7 @@ void AddSimulate(CLI::App& app) {
       ->add_option("--depth-step", o.depth_step,
                    "depth of every n-th pixel of every n-th row, 1 or 2")
       ->capture_default_str();
-  command
-      ->add_option("--change", o.change.strength,
-                   "how much days differ: 0 not at all, 1 as real ones")
+  command->add_option("--change", o.change.strength, "how much days differ: 0 not at all")
       ->capture_default_str();
   command->add_option("--fixed", flags->fixed, "what does not change between days")
       ->check(CLI::IsMember({"light", "structures", "traffic", "season"}));

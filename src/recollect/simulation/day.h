@@ -31,7 +31,9 @@ std::string Name(Weather weather);
 
 // How much the world differs between days, and in what.
 struct Change {
-  double strength = 1;     // 0: nothing but the laps' own poses differs; scales rates and amounts
+  // 0: nothing but the laps' own poses differs; scales rates and amounts. The default makes places
+  // about as hard to recognise as the paper's real ones (docs/simulation.md).
+  double strength = 1.75;
   bool light = true;       // time of day, weather, camera settings; else a fair noon
   bool structures = true;  // buildings, paint, trees, signs, fences, kiosks come, go and change
   bool traffic = true;     // parked and moving cars, pedestrians
