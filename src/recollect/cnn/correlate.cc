@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "recollect/cnn/correspondence.h"
+#include "recollect/cnn/softmax_rows.h"
 #include "recollect/core/error.h"
 
 namespace recollect::cnn {
@@ -21,14 +22,23 @@ std::int64_t WindowStart(std::int64_t best, const Grid& grid) {
   return row * grid.columns + column;
 }
 
-// The batch is shared out among the threads. Each pair's scores then stay in the cache from one
-// operation on them to the next.
+// The batch is shared out among the threads, a pair's live cells are taken in blocks: a block's
+// scores stay in the cache from one operation on them to the next.
+constexpr std::int64_t kBlock = 64;
+
 template <typename Body>
 void ForEachPair(std::int64_t batch, const Body& body) {
   at::parallel_for(0, batch, 1, [&](std::int64_t begin, std::int64_t end) {
     const torch::NoGradGuard no_gradients;
     for (std::int64_t i = begin; i < end; ++i) body(i);
   });
+}
+
+template <typename Body>
+void ForEachBlock(std::int64_t cells, const Body& body) {
+  for (std::int64_t from = 0; from < cells; from += kBlock) {
+    body(from, std::min(kBlock, cells - from));
+  }
 }
 
 class CorrelateFunction : public torch::autograd::Function<CorrelateFunction> {
@@ -43,19 +53,24 @@ class CorrelateFunction : public torch::autograd::Function<CorrelateFunction> {
     torch::Tensor starts = torch::empty({batch, cells}, torch::kLong);
     AT_DISPATCH_FLOATING_TYPES(live.scalar_type(), "Correlate", [&] {
       ForEachPair(batch, [&](std::int64_t i) {
-        torch::Tensor scores = torch::mm(live[i].t(), key[i]);
-        const auto [most, best] = scores.max(1);
-        const auto* best_at = best.data_ptr<std::int64_t>();
-        const auto* from = scores.data_ptr<scalar_t>();
+        torch::Tensor scores = torch::empty({std::min(kBlock, cells), cells}, live.options());
         auto* start = starts.data_ptr<std::int64_t>() + i * cells;
+        auto* sum = total.data_ptr<scalar_t>() + i * cells;
         auto* to = window.data_ptr<scalar_t>() + i * cells * kSide * kSide;
-        for (std::int64_t cell = 0; cell < cells; ++cell, from += cells) {
-          start[cell] = WindowStart(best_at[cell], grid);
-          for (std::int64_t row = 0; row < kSide; ++row) {
-            to = std::copy_n(from + start[cell] + row * columns, kSide, to);
+        ForEachBlock(cells, [&](std::int64_t first, std::int64_t count) {
+          torch::Tensor rows_of_block = scores.narrow(0, 0, count);
+          torch::mm_out(rows_of_block, live[i].narrow(1, first, count).t(), key[i]);
+          const auto* row = scores.data_ptr<scalar_t>();
+          for (std::int64_t cell = first; cell < first + count; ++cell, row += cells) {
+            std::int64_t best = 0;
+            const scalar_t greatest = Greatest(row, cells, &best);
+            sum[cell] = LogSumExp(row, cells, greatest);
+            start[cell] = WindowStart(best, grid);
+            for (std::int64_t r = 0; r < kSide; ++r) {
+              to = std::copy_n(row + start[cell] + r * columns, kSide, to);
+            }
           }
-        }
-        total[i].copy_(scores.sub_(most.unsqueeze(1)).exp_().sum(1).log_().add_(most));
+        });
       });
     });
     const torch::Tensor middle = starts + (kReach * columns + kReach);
@@ -75,23 +90,31 @@ class CorrelateFunction : public torch::autograd::Function<CorrelateFunction> {
     const std::int64_t batch = live.size(0), cells = live.size(2);
     const torch::Tensor total_gradient = gradients[0].contiguous();
     const torch::Tensor window_gradient = gradients[1].contiguous();
-    torch::Tensor live_gradient = torch::empty_like(live), key_gradient = torch::empty_like(key);
+    torch::Tensor live_gradient = torch::empty_like(live), key_gradient = torch::zeros_like(key);
     AT_DISPATCH_FLOATING_TYPES(live.scalar_type(), "Correlate", [&] {
       ForEachPair(batch, [&](std::int64_t i) {
         // d total / d score is the softmax; d window / d score picks.
-        torch::Tensor gradient = torch::mm(live[i].t(), key[i]);
-        gradient.sub_(total[i].unsqueeze(1)).exp_().mul_(total_gradient[i].unsqueeze(1));
+        torch::Tensor block = torch::empty({std::min(kBlock, cells), cells}, live.options());
+        torch::Tensor live_part = live_gradient[i], key_part = key_gradient[i];
+        const auto* sum = total.data_ptr<scalar_t>() + i * cells;
+        const auto* scale = total_gradient.data_ptr<scalar_t>() + i * cells;
         const auto* start = starts.data_ptr<std::int64_t>() + i * cells;
         const auto* from = window_gradient.data_ptr<scalar_t>() + i * cells * kSide * kSide;
-        auto* to = gradient.data_ptr<scalar_t>();
-        for (std::int64_t cell = 0; cell < cells; ++cell, to += cells) {
-          for (std::int64_t row = 0; row < kSide; ++row) {
-            auto* cells_of_row = to + start[cell] + row * columns;
-            for (std::int64_t column = 0; column < kSide; ++column) cells_of_row[column] += *from++;
+        ForEachBlock(cells, [&](std::int64_t first, std::int64_t count) {
+          torch::Tensor gradient = block.narrow(0, 0, count);
+          const torch::Tensor live_block = live[i].narrow(1, first, count);
+          torch::mm_out(gradient, live_block.t(), key[i]);
+          auto* row = block.data_ptr<scalar_t>();
+          for (std::int64_t cell = first; cell < first + count; ++cell, row += cells) {
+            ScaledSoftmax(row, cells, sum[cell], scale[cell]);
+            for (std::int64_t r = 0; r < kSide; ++r) {
+              auto* to = row + start[cell] + r * columns;
+              for (std::int64_t column = 0; column < kSide; ++column) to[column] += *from++;
+            }
           }
-        }
-        live_gradient[i].copy_(torch::mm(key[i], gradient.t()));
-        key_gradient[i].copy_(torch::mm(live[i], gradient));
+          live_part.narrow(1, first, count).copy_(torch::mm(key[i], gradient.t()));
+          key_part.addmm_(live_block, gradient);
+        });
       });
     });
     return {live_gradient, key_gradient, {}, {}};

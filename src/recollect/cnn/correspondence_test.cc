@@ -47,6 +47,26 @@ TEST(Correlate, GradientOfTotalAndWindow) {
       {Features(2), Features(2)});
 }
 
+// Float has kernels of its own: they must give what double gives, over several blocks of cells and
+// rows that fill no whole vectors.
+TEST(Correlate, FloatEqualsDouble) {
+  torch::manual_seed(5);
+  const Grid grid{11, 17};
+  const auto run = [&](const torch::Tensor& live, const torch::Tensor& key) {
+    const torch::Tensor l = live.clone().requires_grad_(), k = key.clone().requires_grad_();
+    const Correlation c = Correlate(l, k, grid);
+    (c.total.square().sum() + c.window.sin().sum()).backward();
+    return std::vector{c.total.detach(), c.window.detach(), l.grad(), k.grad()};
+  };
+  const torch::Tensor live = 2 * torch::randn({3, 8, grid.cells()}, torch::kDouble),
+                      key = 2 * torch::randn({3, 8, grid.cells()}, torch::kDouble);
+  const auto in_double = run(live, key),
+             in_float = run(live.to(torch::kFloat), key.to(torch::kFloat));
+  for (std::size_t i = 0; i < in_double.size(); ++i) {
+    EXPECT_TRUE(torch::allclose(in_float[i].to(torch::kDouble), in_double[i], 1e-4, 1e-3)) << i;
+  }
+}
+
 TEST(Correlate, RefusesGridsSmallerThanItsWindow) {
   EXPECT_THROW(Correlate(torch::zeros({1, 2, 20}), torch::zeros({1, 2, 20}), {4, 5}), Error);
 }

@@ -94,11 +94,17 @@ class Trainer {
 
   bool Finished() const {
     if (state_.step >= total_steps_) return true;
-    // The last validation comes out of the budget too; it may take longer than the one before.
-    if (options_.minutes > 0 && Seconds() + 1.5 * validation_seconds_ > 60 * options_.minutes) {
-      return true;
-    }
+    // One more step and the last validation come out of the budget too; they may take longer than
+    // those before.
+    const double to_come = 1.5 * (step_seconds_ + ValidationSeconds());
+    if (options_.minutes > 0 && Seconds() + to_come > 60 * options_.minutes) return true;
     return options_.patience > 0 && state_.without_gain >= options_.patience;
+  }
+
+  // Of the next validation; before the first one, by the steps: forward is less than half of a step.
+  double ValidationSeconds() const {
+    if (validation_seconds_ > 0) return validation_seconds_;
+    return 0.5 * step_seconds_ * static_cast<double>(data_.quick_valid.size()) / options_.batch;
   }
 
   double LearningRate() const {
@@ -113,6 +119,7 @@ class Trainer {
   }
 
   void Step(const Batch& batch, const TrainingLoss& loss) {
+    const Stopwatch step;
     // Dropout's noise follows from the step, so that a resumed training sees the same.
     torch::manual_seed(SubSeed(SubSeed(options_.seed, 3), static_cast<std::uint64_t>(state_.step)));
     network_->train();
@@ -122,6 +129,7 @@ class Trainer {
     adam_->Step(rate_);
     ++state_.step;
     means_.Add(losses);
+    step_seconds_ = step.Seconds();
     Report(progress_, "train", state_.step, ExpectedSteps(),
            fmt::format("loss {:.3f}  valid {:.3f} m", losses.total.item<double>(),
                        state_.curve.empty() ? 0.0 : state_.curve.back().valid_position_m));
@@ -203,7 +211,7 @@ class Trainer {
   std::unique_ptr<Adam> adam_;
   TrainingState state_;
   LossMeans means_;
-  double rate_ = 0, validation_seconds_ = 0;
+  double rate_ = 0, step_seconds_ = 0, validation_seconds_ = 0;
 };
 
 }  // namespace
