@@ -42,10 +42,13 @@ void LapFlags::AddTo(CLI::App& command, bool required) {
       ->capture_default_str();
 }
 
-std::vector<Lap> LapFlags::Read() const {
+std::vector<Lap> LapFlags::Read(bool worlds_apart) const {
   std::vector<Lap> laps;
+  int world = 0;
   for (const std::string& folder : folders) {
     std::vector<Lap> some = ReadLapRange(folder, ParseFormat(format));
+    for (Lap& lap : some) lap.world = world;
+    world += worlds_apart;
     std::move(some.begin(), some.end(), std::back_inserter(laps));
   }
   return laps;

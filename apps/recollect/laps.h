@@ -19,8 +19,8 @@ struct LapFlags {
   std::string format = "guess";
 
   void AddTo(CLI::App& command, bool required = true);
-  // All laps of all folders, in the order given.
-  std::vector<Lap> Read() const;
+  // All laps of all folders, in the order given. `worlds_apart`: each folder is a world of its own.
+  std::vector<Lap> Read(bool worlds_apart = false) const;
 };
 
 }  // namespace recollect::app

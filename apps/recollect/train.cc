@@ -17,6 +17,7 @@ struct TrainFlags {
   std::vector<std::string> valid;
   std::string network = "compact";
   std::string schedule;
+  bool worlds_apart = false;
   cnn::TrainOptions given;
 };
 
@@ -62,7 +63,7 @@ struct TrainCommand {
 
   void Run() const {
     const cnn::TrainOptions options = Options();
-    const std::vector<Lap> laps = flags.laps.Read();
+    const std::vector<Lap> laps = flags.laps.Read(flags.worlds_apart);
     std::vector<Lap> valid;
     for (const std::string& folder : flags.valid) {
       for (Lap& lap : ReadLapRange(folder, ParseFormat(flags.laps.format))) {
@@ -116,6 +117,8 @@ void AddTrain(CLI::App& app) {
   command.add_option("--correspondence", given.loss.correspondence_weight,
                      "weight of the correspondence loss; 0: off");
   command.add_option("--depth-loss", given.loss.depth_weight, "weight of the depth loss; 0: off");
+  command.add_flag("--worlds-apart", flags.worlds_apart,
+                   "each --lap is a world of its own: no pairs between them");
   command.add_option("--distance", given.pairs.max_distance_m, "metres between two frames at most");
   command.add_option("--key-spacing", given.pairs.key_spacing_m,
                      "metres between key frames; 0: all frames are key frames");

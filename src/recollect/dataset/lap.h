@@ -39,6 +39,7 @@ struct Lap {
   // Up in the world's axes, or zero where the format does not say: KITTI's world is its first
   // camera in the odometry benchmark (y down), and a map's (z up) elsewhere.
   Eigen::Vector3d world_up = Eigen::Vector3d::Zero();
+  int world = 0;             // poses of laps with different numbers here have nothing in common
   double depth_unit = 0.01;  // metres a step of the depth images
   std::vector<Frame> frames;
   std::vector<GpsFix> gps;  // in order of time; empty where there is none

@@ -4,6 +4,7 @@ namespace recollect {
 
 std::vector<FramePair> PairsWithin(const Lap& live, const Lap& key, double max_distance_m,
                                    double max_angle_rad) {
+  if (live.world != key.world) return {};
   const Track live_track = MakeTrack(live), key_track = MakeTrack(key);
   std::vector<Eigen::Vector3d> key_positions;
   for (std::size_t k = 0; k < key.frames.size(); ++k) {

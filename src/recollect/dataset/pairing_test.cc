@@ -32,6 +32,13 @@ TEST(PairsWithin, GivesAllPairsInOrder) {
   EXPECT_EQ(PairsWithin(lap, lap, 2, 0.1), (Pairs{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
 }
 
+TEST(PairsWithin, KeepsWorldsApart) {
+  Lap elsewhere = Drive({0, 2});
+  elsewhere.world = 1;
+  EXPECT_TRUE(PairsWithin(Drive({0, 2}), elsewhere, 2, 0.1).empty());
+  EXPECT_EQ(PairsWithin(elsewhere, elsewhere, 2, 0.1).size(), 4u);
+}
+
 TEST(PairsWithin, MeasuresFromCameraToCamera) {
   const double half_turn = std::numbers::pi;
   EXPECT_EQ(PairsWithin(Drive({0}), Drive({1}, half_turn), 0.1, half_turn + 0.1).size(), 1u);
