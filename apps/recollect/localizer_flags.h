@@ -13,7 +13,7 @@ namespace recollect::app {
 // The flags that say how poses are found: --map, --model and --relative.
 struct LocalizerFlags {
   std::filesystem::path map, model;
-  std::string relative = "auto";
+  std::string relative = "auto", filter = "bayes";
 
   void AddTo(CLI::App& command) {
     command.add_option("--map", map, "the map")->required()->type_name("MAP");
@@ -24,6 +24,12 @@ struct LocalizerFlags {
                     "who finds the pose at the key frame: cnn, pnp (geometry), fused, or auto:\n"
                     "fused where the map has geometry, else cnn; pnp where there is no model")
         ->check(CLI::IsMember({"auto", "cnn", "pnp", "fused"}))
+        ->capture_default_str();
+    command
+        .add_option("--filter", filter,
+                    "what geometry makes of the images before: bayes (they are of one drive, in\n"
+                    "order), or none (each image by itself)")
+        ->check(CLI::IsMember({"none", "bayes"}))
         ->capture_default_str();
   }
   std::optional<cnn::PoseNetwork> Network(int threads) const {
@@ -37,6 +43,7 @@ struct LocalizerFlags {
                                                                   {"fused", Relative::kFused}};
     LocalizerOptions options;
     options.relative = known.at(relative);
+    if (filter == "bayes") options.sequence.emplace();
     return options;
   }
 };

@@ -52,6 +52,11 @@ Localizer::Localizer(const Map& map, std::optional<cnn::PoseNetwork> network, Th
       encoder_(map.description().network, map.description().camera.left.width,
                map.description().camera.left.height, pool) {
   Require(map.size() > 0, "map", "has no key frames");
+  if (options.sequence) drive_.emplace(map, *options.sequence);
+}
+
+void Localizer::Reset() {
+  if (drive_) drive_->Reset();
 }
 
 Localization Localizer::Localize(const cv::Mat& image, const std::string& name) {
@@ -95,35 +100,61 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
   const matching::Features live = matching::FindFeatures(matching::ToGray(image));
   answer.ms.features = step.Milliseconds();
   step.Restart();
-  const std::vector<int> proposals =
-      ProposePlaces(recollection.histogram, frames_.world_from_camera, options_.verify.place_m,
-                    options_.proposals);
-  const auto verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify);
+  const std::vector<int> tracked = drive_ ? drive_->Tracked() : std::vector<int>();
+  const std::vector<int> proposals = Propose(recollection, tracked);
+  // Where the drive leads is looked at first, and if that is sure, nowhere else.
+  std::optional<matching::Verified> verified;
+  if (!tracked.empty()) {
+    verified = matching::VerifyPlaces(frames_, live, std::span(tracked).first(1), options_.verify);
+  }
+  if (!verified || !matching::IsSure(*verified, options_.sure)) {
+    verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify);
+  }
   answer.by_geometry = verified;
   answer.ms.verify = step.Milliseconds();
-  if (verified && matching::IsSure(*verified, options_.sure)) {
+  if (verified && (relative_ == Relative::kPnp || matching::IsSure(*verified, options_.sure))) {
     Take(*verified, Relative::kPnp, answer);
-    return;
-  }
-  if (relative_ == Relative::kPnp) {
-    if (verified) {
-      Take(*verified, Relative::kPnp, answer);
-      return;
-    }
-    answer.world_from_camera = map_.At(answer.key_frame).world_from_camera;
+  } else if (relative_ == Relative::kFused) {
+    RelateTogether(image, live, proposals.front(), answer);
+  } else {
+    answer.place = proposals.front();
+    answer.world_from_camera = map_.At(answer.place).world_from_camera;
     answer.covariance.diagonal() << 0.01, 0.01, 0.01, 25, 25, 25;
     answer.carried_by = Relative::kPnp;
     answer.state = State::kLost;
-    return;
   }
-  // Unsure: the network's pose leads to matches that stood out too little by themselves. It starts
-  // from where verification points, else from the likeliest place.
+  if (drive_) {
+    const bool known = answer.state == State::kLocalised;
+    drive_->Learn(known ? std::optional(answer.world_from_camera) : std::nullopt);
+  }
+}
+
+std::vector<int> Localizer::Propose(const wnn::Recollection& recollection,
+                                    std::span<const int> tracked) {
+  const double place_m = options_.verify.place_m;
+  const std::vector<int> by_votes =
+      ProposePlaces(recollection.histogram, frames_.world_from_camera, place_m, options_.proposals);
+  if (!drive_) return by_votes;
+  const std::vector<int> by_belief = drive_->Believed(recollection, place_m, options_.proposals);
+  std::vector<int> proposals(tracked.begin(), tracked.end());
+  for (std::size_t i = 0; i < std::max(by_belief.size(), by_votes.size()); ++i) {
+    if (i < by_belief.size()) proposals.push_back(by_belief[i]);
+    if (i < by_votes.size()) proposals.push_back(by_votes[i]);
+  }
+  return proposals;
+}
+
+// The network's pose leads to matches that stood out too little by themselves. It starts from where
+// verification points, else from the likeliest place.
+void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& live, int likeliest,
+                               Localization& answer) {
+  const std::optional<matching::Verified>& verified = answer.by_geometry;
   const int recollected = answer.key_frame;
-  answer.key_frame = verified ? verified->key_frame : proposals.front();
+  answer.key_frame = verified ? verified->key_frame : likeliest;
   RelateByNetwork(image, answer);
   answer.place = answer.key_frame;
   answer.key_frame = recollected;
-  step.Restart();
+  const Stopwatch step;
   matching::VerifyOptions wide = options_.verify;
   wide.guided_px[0] = kWideSearchPx;
   const auto together = matching::RefineFrom(frames_, live, answer.world_from_camera, wide,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "recollect/cnn/pose_network.h"
+#include "recollect/localization/drive.h"
 #include "recollect/map/map.h"
 #include "recollect/matching/verify.h"
 #include "recollect/wnn/encoder.h"
@@ -63,9 +64,13 @@ struct LocalizerOptions {
   matching::VerifyOptions verify;
   matching::SureOptions sure;
   int proposals = 40;  // key frames of the committee that verification chooses places from
+  // Images come from one drive, in order: those before say where to look (geometry only). None:
+  // each image by itself.
+  std::optional<wnn::SequenceOptions> sequence;
 };
 
-// Localises images against a map, without any other input. Holds no state between images.
+// Localises images against a map, without any other input. Remembers nothing from image to image
+// but what LocalizerOptions::sequence asks for.
 // Not to be called from two threads at a time.
 class Localizer {
  public:
@@ -76,6 +81,9 @@ class Localizer {
 
   // image: 8-bit B, G, R of the map camera's size; throws Error calling it `name` otherwise.
   Localization Localize(const cv::Mat& image, const std::string& name = "live image");
+
+  // The next image does not follow on the last one.
+  void Reset();
 
   // The parts of Localize, for judging each by itself.
   wnn::Recollection Recollect(const cv::Mat& image, const std::string& name = "live image");
@@ -92,6 +100,11 @@ class Localizer {
   void RelateByNetwork(const cv::Mat& image, Localization& answer);
   void RelateByGeometry(const cv::Mat& image, const wnn::Recollection& recollection,
                         Localization& answer);
+  // Key frames that verification chooses places from, those of the sequence among them.
+  std::vector<int> Propose(const wnn::Recollection& recollection, std::span<const int> tracked);
+  // The rest of RelateByGeometry, once verification is not sure.
+  void RelateTogether(const cv::Mat& image, const matching::Features& live, int likeliest,
+                      Localization& answer);
   void Take(const matching::Verified& verified, Relative carried_by, Localization& answer) const;
   matching::PosePrior NetworkPrior(const SE3& world_from_camera) const;
 
@@ -102,6 +115,7 @@ class Localizer {
   Relative relative_;
   matching::MappedFrames frames_;
   wnn::Encoder encoder_;
+  std::optional<Drive> drive_;
 };
 
 }  // namespace recollect

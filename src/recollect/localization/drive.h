@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "recollect/map/map.h"
+#include "recollect/wnn/committee.h"
+#include "recollect/wnn/sequence.h"
+
+namespace recollect {
+
+// What the images before tell of where the next one was taken, when all come from one drive.
+class Drive {
+ public:
+  // `map` must outlive it. Throws Error on options out of range.
+  Drive(const Map& map, const wnn::SequenceOptions& options);
+
+  // Key frames where the last localised pose leads, nearest first; empty where it is unknown.
+  std::vector<int> Tracked() const;
+  // Key frames by the belief that the sequence of histograms has led to, this image's the last of
+  // them: one call an image. Most likely first, at most `count`.
+  std::vector<int> Believed(const wnn::Recollection& recollection, double place_m, int count);
+
+  // The pose of the image, where it is to be relied on.
+  void Learn(const std::optional<SE3>& world_from_camera);
+  // Forgets all images.
+  void Reset();
+
+ private:
+  std::vector<SE3> world_from_keyframe_;
+  std::unique_ptr<wnn::Sequence> sequence_;
+  std::optional<SE3> last_, before_last_;  // localised poses; before_last_ of the image before
+  int unknown_ = 0;                        // images since last_
+};
+
+}  // namespace recollect

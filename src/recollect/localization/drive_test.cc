@@ -1,0 +1,85 @@
+#include "recollect/localization/drive.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "recollect/core/parallel.h"
+#include "recollect/testing/street.h"
+
+namespace recollect {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A street of 60 m, key frames every 5 m.
+class DriveTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / ("recollect_drive_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    const Lap lap = testing::DriveStreet(folder_ / "lap", {.length_m = 60, .seed = 1});
+    CreateMap(folder_ / "m.map", std::span(&lap, 1), {}, pool_);
+    map_.emplace(Map::Open(folder_ / "m.map"));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Of key frame `key`, moved on by so many metres.
+  SE3 Beyond(int key, double metres) const {
+    return map_->At(key).world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, metres});
+  }
+
+  fs::path folder_;
+  ThreadPool pool_{2};
+  std::optional<Map> map_;
+};
+
+TEST_F(DriveTest, SteadyMotionLeadsToTheKeyFrameAhead) {
+  Drive drive(*map_, {});
+  EXPECT_TRUE(drive.Tracked().empty());
+  drive.Learn(Beyond(4, 0));
+  EXPECT_EQ(drive.Tracked().front(), 4);  // one pose tells no motion
+  drive.Learn(Beyond(5, 0));
+  EXPECT_EQ(drive.Tracked().front(), 6);
+  drive.Learn(std::nullopt);
+  EXPECT_EQ(drive.Tracked().front(), 7);  // it goes on while images say nothing
+}
+
+TEST_F(DriveTest, ForgetsAPoseThatNothingConfirms) {
+  Drive drive(*map_, {});
+  drive.Learn(Beyond(4, 0));
+  for (int i = 0; i < 4; ++i) drive.Learn(std::nullopt);
+  EXPECT_FALSE(drive.Tracked().empty());
+  drive.Learn(std::nullopt);
+  EXPECT_TRUE(drive.Tracked().empty());
+  drive.Learn(Beyond(4, 0));
+  drive.Reset();
+  EXPECT_TRUE(drive.Tracked().empty());
+}
+
+TEST_F(DriveTest, KeyFramesThatLookBackAreNotExpected) {
+  Drive drive(*map_, {});
+  const SE3 turned = SE3::FromRotationVector({0, std::numbers::pi, 0}, {0, 0, 0});
+  drive.Learn(Beyond(4, 0) * turned);
+  EXPECT_TRUE(drive.Tracked().empty());
+}
+
+// An image whose votes favour another place does not move the belief from where the drive has got
+// to, as long as it speaks for that as well.
+TEST_F(DriveTest, BelievesTheDriveRatherThanOneImage) {
+  Drive drive(*map_, {});
+  const auto see = [&](std::vector<wnn::LabelVotes> votes) {
+    wnn::Recollection recollection;
+    recollection.histogram = std::move(votes);
+    return drive.Believed(recollection, 8, 5);
+  };
+  for (const int key : {3, 4, 5, 6, 7}) see({{key, 100}});
+  const std::vector<int> keys = see({{1, 60}, {8, 40}});
+  ASSERT_FALSE(keys.empty());
+  EXPECT_EQ(keys.front(), 8);
+}
+
+}  // namespace
+}  // namespace recollect
