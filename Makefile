@@ -8,7 +8,7 @@ RECOLLECT = build/recollect
 # make demo DATA=folder: the laps to show (docs/data.md); without, it renders some.
 DATA =
 
-.PHONY: setup build test sanitize demo format
+.PHONY: setup configure build test sanitize demo format
 
 # Installs what is missing and nothing else; quiet and quick when all is there.
 setup:
@@ -23,15 +23,18 @@ setup:
 	DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends $$missing >/dev/null || { \
 	  echo "make setup: could not install:" $$missing >&2; exit 1; }
 
-build: setup
+configure: setup
 	@cmake --preset default >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; rm -f build.log
+
+build: configure
 	@cmake --build build
 
 test: build
 	ctest --preset default
 
 # Maps all laps but the last, trains on them, localises the last, draws the picture.
-demo: build
+demo: configure
+	@cmake --build build --target recollect
 	@$(RECOLLECT) demo $(if $(DATA),--data $(DATA))
 
 # The unit tests again under the address and undefined-behaviour sanitizers.
