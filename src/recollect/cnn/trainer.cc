@@ -101,7 +101,8 @@ class Trainer {
     return options_.patience > 0 && state_.without_gain >= options_.patience;
   }
 
-  // Of the next validation; before the first one, by the steps: forward is less than half of a step.
+  // Of the next validation; before the first one, by the steps: forward is less than half of a
+  // step.
   double ValidationSeconds() const {
     if (validation_seconds_ > 0) return validation_seconds_;
     return 0.5 * step_seconds_ * static_cast<double>(data_.quick_valid.size()) / options_.batch;

@@ -9,7 +9,8 @@ namespace recollect {
 
 // Every live frame with every key frame whose camera is at most `max_distance_m` away and whose
 // heading differs by at most `max_angle_rad`; in order of live, then key. Laps of different worlds
-// have no pairs. A lap paired with itself gives each frame with itself too, and each pair both ways round.
+// have no pairs. A lap paired with itself gives each frame with itself too, and each pair both ways
+// round.
 std::vector<FramePair> PairsWithin(const Lap& live, const Lap& key, double max_distance_m,
                                    double max_angle_rad);
 
