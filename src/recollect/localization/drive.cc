@@ -10,8 +10,9 @@
 namespace recollect {
 namespace {
 
+// How far a drive leaves its steady motion from one image to the next.
+constexpr double kMoveSigmaM = 1, kTurnSigma = 0.05;
 constexpr int kPatience = 5;    // images without a pose after which the last one leads nowhere
-constexpr double kReachM = 20;  // key frames further from where it leads are not looked at
 constexpr double kVotes = 1e6;  // a belief of one, as votes
 
 }  // namespace
@@ -23,24 +24,16 @@ Drive::Drive(const Map& map, const wnn::SequenceOptions& options)
   }
 }
 
-std::vector<int> Drive::Tracked() const {
-  if (!last_) return {};
-  // Steady motion; with one pose alone, none.
+std::optional<matching::PosePrior> Drive::Expected() const {
+  if (!last_) return std::nullopt;
   const SE3 step = before_last_ ? before_last_->Inverse() * *last_ : SE3();
-  SE3 expected = *last_;
-  for (int i = 0; i <= unknown_; ++i) expected = expected * step;
-  std::vector<std::pair<double, int>> near;
-  for (std::size_t key = 0; key < world_from_keyframe_.size(); ++key) {
-    const SE3& pose = world_from_keyframe_[key];
-    const double distance = (pose.translation() - expected.translation()).norm();
-    if (distance > kReachM || pose.rotation().col(2).dot(expected.rotation().col(2)) < 0.5)
-      continue;
-    near.emplace_back(distance, static_cast<int>(key));
-  }
-  std::sort(near.begin(), near.end());
-  std::vector<int> keys;
-  for (const auto& [distance, key] : near) keys.push_back(key);
-  return keys;
+  matching::PosePrior expected{*last_, Matrix6d::Zero()};
+  for (int i = 0; i <= unknown_; ++i)
+    expected.world_from_camera = expected.world_from_camera * step;
+  const double images = unknown_ + 1;
+  expected.covariance.diagonal().head<3>().setConstant(std::pow(kTurnSigma * images, 2));
+  expected.covariance.diagonal().tail<3>().setConstant(std::pow(kMoveSigmaM * images, 2));
+  return expected;
 }
 
 std::vector<int> Drive::Believed(const wnn::Recollection& recollection, double place_m, int count) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "recollect/map/map.h"
+#include "recollect/matching/refine.h"
 #include "recollect/wnn/committee.h"
 #include "recollect/wnn/sequence.h"
 
@@ -16,8 +17,8 @@ class Drive {
   // `map` must outlive it. Throws Error on options out of range.
   Drive(const Map& map, const wnn::SequenceOptions& options);
 
-  // Key frames where the last localised pose leads, nearest first; empty where it is unknown.
-  std::vector<int> Tracked() const;
+  // Where the last localised poses lead, in steady motion; none where they are unknown.
+  std::optional<matching::PosePrior> Expected() const;
   // Key frames by the belief that the sequence of histograms has led to, this image's the last of
   // them: one call an image. Most likely first, at most `count`.
   std::vector<int> Believed(const wnn::Recollection& recollection, double place_m, int count);

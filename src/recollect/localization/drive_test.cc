@@ -36,34 +36,32 @@ class DriveTest : public ::testing::Test {
   std::optional<Map> map_;
 };
 
-TEST_F(DriveTest, SteadyMotionLeadsToTheKeyFrameAhead) {
+TEST_F(DriveTest, SteadyMotionLeadsToWhereItGoes) {
   Drive drive(*map_, {});
-  EXPECT_TRUE(drive.Tracked().empty());
+  EXPECT_FALSE(drive.Expected());
+  const auto off = [&](const SE3& pose) {
+    return (drive.Expected()->world_from_camera.translation() - pose.translation()).norm();
+  };
   drive.Learn(Beyond(4, 0));
-  EXPECT_EQ(drive.Tracked().front(), 4);  // one pose tells no motion
-  drive.Learn(Beyond(5, 0));
-  EXPECT_EQ(drive.Tracked().front(), 6);
+  EXPECT_NEAR(off(Beyond(4, 0)), 0, 1e-9);  // one pose tells no motion
+  drive.Learn(Beyond(4, 1.5));
+  EXPECT_NEAR(off(Beyond(4, 3)), 0, 1e-6);
+  const double before = drive.Expected()->covariance.trace();
   drive.Learn(std::nullopt);
-  EXPECT_EQ(drive.Tracked().front(), 7);  // it goes on while images say nothing
+  EXPECT_NEAR(off(Beyond(4, 4.5)), 0, 1e-6);  // it goes on while images say nothing
+  EXPECT_GT(drive.Expected()->covariance.trace(), before);
 }
 
 TEST_F(DriveTest, ForgetsAPoseThatNothingConfirms) {
   Drive drive(*map_, {});
   drive.Learn(Beyond(4, 0));
   for (int i = 0; i < 4; ++i) drive.Learn(std::nullopt);
-  EXPECT_FALSE(drive.Tracked().empty());
+  EXPECT_TRUE(drive.Expected());
   drive.Learn(std::nullopt);
-  EXPECT_TRUE(drive.Tracked().empty());
+  EXPECT_FALSE(drive.Expected());
   drive.Learn(Beyond(4, 0));
   drive.Reset();
-  EXPECT_TRUE(drive.Tracked().empty());
-}
-
-TEST_F(DriveTest, KeyFramesThatLookBackAreNotExpected) {
-  Drive drive(*map_, {});
-  const SE3 turned = SE3::FromRotationVector({0, std::numbers::pi, 0}, {0, 0, 0});
-  drive.Learn(Beyond(4, 0) * turned);
-  EXPECT_TRUE(drive.Tracked().empty());
+  EXPECT_FALSE(drive.Expected());
 }
 
 // An image whose votes favour another place does not move the belief from where the drive has got

@@ -1,6 +1,7 @@
 #include "recollect/localization/localizer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "recollect/core/error.h"
@@ -12,8 +13,15 @@
 namespace recollect {
 namespace {
 
-// A network's answer further off than this from what geometry finds says nothing of it.
+// What a network or a drive predicts is further off than what geometry finds by itself.
 constexpr double kWideSearchPx = 30;
+
+// Within three standard deviations, in position.
+bool IsNear(const matching::PosePrior& expected, const SE3& world_from_camera) {
+  const double sigma_m = std::sqrt(expected.covariance(5, 5));
+  return (world_from_camera.translation() - expected.world_from_camera.translation()).norm() <
+         3 * sigma_m;
+}
 
 Relative Choose(const std::optional<Relative>& wanted, bool network, bool geometry) {
   if (!wanted) {
@@ -100,19 +108,23 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
   const matching::Features live = matching::FindFeatures(matching::ToGray(image));
   answer.ms.features = step.Milliseconds();
   step.Restart();
-  const std::vector<int> tracked = drive_ ? drive_->Tracked() : std::vector<int>();
-  const std::vector<int> proposals = Propose(recollection, tracked);
   // Where the drive leads is looked at first, and if that is sure, nowhere else.
+  const auto expected = drive_ ? drive_->Expected() : std::nullopt;
+  const std::vector<int> proposals = Propose(recollection);
   std::optional<matching::Verified> verified;
-  if (!tracked.empty()) {
-    verified = matching::VerifyPlaces(frames_, live, std::span(tracked).first(1), options_.verify);
+  if (expected) {
+    verified =
+        matching::VerifyExpected(frames_, live, expected->world_from_camera, options_.verify);
   }
-  if (!verified || !matching::IsSure(*verified, options_.sure)) {
+  bool sure = verified && matching::IsSure(*verified, options_.sure) &&
+              IsNear(*expected, verified->world_from_camera);
+  if (!sure) {
     verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify);
+    sure = verified && matching::IsSure(*verified, options_.sure);
   }
   answer.by_geometry = verified;
   answer.ms.verify = step.Milliseconds();
-  if (verified && (relative_ == Relative::kPnp || matching::IsSure(*verified, options_.sure))) {
+  if (verified && (relative_ == Relative::kPnp || sure)) {
     Take(*verified, Relative::kPnp, answer);
   } else if (relative_ == Relative::kFused) {
     RelateTogether(image, live, proposals.front(), answer);
@@ -124,19 +136,23 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
     answer.state = State::kLost;
   }
   if (drive_) {
+    // One image against the drive: what repeats along a road (fences, lamps) has many places.
+    if (expected && answer.state == State::kLocalised &&
+        !IsNear(*expected, answer.world_from_camera)) {
+      answer.state = State::kUncertain;
+    }
     const bool known = answer.state == State::kLocalised;
     drive_->Learn(known ? std::optional(answer.world_from_camera) : std::nullopt);
   }
 }
 
-std::vector<int> Localizer::Propose(const wnn::Recollection& recollection,
-                                    std::span<const int> tracked) {
+std::vector<int> Localizer::Propose(const wnn::Recollection& recollection) {
   const double place_m = options_.verify.place_m;
   const std::vector<int> by_votes =
       ProposePlaces(recollection.histogram, frames_.world_from_camera, place_m, options_.proposals);
   if (!drive_) return by_votes;
   const std::vector<int> by_belief = drive_->Believed(recollection, place_m, options_.proposals);
-  std::vector<int> proposals(tracked.begin(), tracked.end());
+  std::vector<int> proposals;
   for (std::size_t i = 0; i < std::max(by_belief.size(), by_votes.size()); ++i) {
     if (i < by_belief.size()) proposals.push_back(by_belief[i]);
     if (i < by_votes.size()) proposals.push_back(by_votes[i]);
@@ -155,9 +171,7 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   answer.place = answer.key_frame;
   answer.key_frame = recollected;
   const Stopwatch step;
-  matching::VerifyOptions wide = options_.verify;
-  wide.guided_px[0] = kWideSearchPx;
-  const auto together = matching::RefineFrom(frames_, live, answer.world_from_camera, wide,
+  const auto together = matching::RefineFrom(frames_, live, answer.world_from_camera, Wide(),
                                              NetworkPrior(answer.world_from_camera));
   answer.ms.verify += step.Milliseconds();
   if (together && (!verified || together->support > verified->support)) {
@@ -167,6 +181,12 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   } else {
     answer.state = State::kLost;
   }
+}
+
+matching::VerifyOptions Localizer::Wide() const {
+  matching::VerifyOptions wide = options_.verify;
+  wide.guided_px[0] = kWideSearchPx;
+  return wide;
 }
 
 void Localizer::Take(const matching::Verified& verified, Relative carried_by,

@@ -41,14 +41,22 @@ const SE3& PoseOf(const MappedFrames& map, int key) {
   return map.world_from_camera[static_cast<std::size_t>(key)];
 }
 
-// The pose that most matches with the key frames around `key` agree on.
+// The pose that most matches with the key frames around `key` agree on; of the matches near to
+// where `expected` sees them, where it is given.
 Hypothesis Propose(const MappedFrames& map, const Features& live, int key,
-                   const VerifyOptions& options) {
+                   const VerifyOptions& options, const SE3* expected = nullptr) {
   const SE3& world_from_place = PoseOf(map, key);
   const SE3 place_from_world = world_from_place.Inverse();
+  const SE3 expected_from_place =
+      expected != nullptr ? expected->Inverse() * world_from_place : SE3();
+  const auto far = [&](const Eigen::Vector3d& p_place, const Eigen::Vector2d& pixel) {
+    if (expected == nullptr) return false;
+    const Eigen::Vector3d p = expected_from_place * p_place;
+    return p.z() <= 0 || (map.camera.Project(p) - pixel).norm() > options.expected_px;
+  };
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
-  std::vector<int> features;
+  std::vector<int> features, matched;  // of the live image: of each point, of each match
   for (const int near : Near(map, world_from_place, options.pool_m, options.pool)) {
     const Landmarks landmarks = map.landmarks(near);
     const SE3 place_from_key = place_from_world * PoseOf(map, near);
@@ -58,6 +66,8 @@ Hypothesis Propose(const MappedFrames& map, const Features& live, int key,
       const Eigen::Vector3d p =
           place_from_key * landmarks.points[static_cast<std::size_t>(m.mapped)].p_keyframe;
       const Eigen::Vector2d& pixel = live.pixels[static_cast<std::size_t>(m.live)];
+      matched.push_back(m.live);
+      if (far(p, pixel)) continue;
       points.emplace_back(p.x(), p.y(), p.z());
       pixels.emplace_back(pixel.x(), pixel.y());
       features.push_back(m.live);
@@ -84,9 +94,9 @@ Hypothesis Propose(const MappedFrames& map, const Features& live, int key,
   std::sort(agreeing.begin(), agreeing.end());
   agreeing.erase(std::unique(agreeing.begin(), agreeing.end()), agreeing.end());
   result.support = static_cast<int>(agreeing.size());
-  std::sort(features.begin(), features.end());
-  const auto matched = std::unique(features.begin(), features.end()) - features.begin();
-  result.share = static_cast<double>(agreeing.size()) / static_cast<double>(matched);
+  std::sort(matched.begin(), matched.end());
+  const auto count = std::unique(matched.begin(), matched.end()) - matched.begin();
+  result.share = static_cast<double>(agreeing.size()) / static_cast<double>(count);
   const Eigen::Vector3d w(rotation_vector.at<double>(0), rotation_vector.at<double>(1),
                           rotation_vector.at<double>(2));
   const Eigen::Vector3d t(translation.at<double>(0), translation.at<double>(1),
@@ -112,7 +122,26 @@ std::vector<int> Places(const MappedFrames& map, std::span<const int> proposals,
   return places;
 }
 
+// The pose that a hypothesis leads to.
+std::optional<Verified> Settle(const MappedFrames& map, const Features& live,
+                               const Hypothesis& hypothesis, const VerifyOptions& options) {
+  if (hypothesis.support < options.min_matches) return std::nullopt;
+  std::optional<Verified> result = RefineFrom(map, live, hypothesis.world_from_camera, options);
+  if (!result) return std::nullopt;
+  result->key_frame = hypothesis.key_frame;
+  result->agreed = hypothesis.support;
+  result->agreed_share = hypothesis.share;
+  return result;
+}
+
 }  // namespace
+
+std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& live,
+                                       const SE3& expected, const VerifyOptions& options) {
+  const std::vector<int> nearest = Near(map, expected, options.expected_m, 1);
+  if (nearest.empty()) return std::nullopt;
+  return Settle(map, live, Propose(map, live, nearest.front(), options, &expected), options);
+}
 
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
                                      std::span<const int> proposals, const VerifyOptions& options) {
@@ -122,12 +151,8 @@ std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& li
     if (one.support > best.support) std::swap(one, best);
     if (one.support > rival.support) rival = one;
   }
-  if (best.support < options.min_matches) return std::nullopt;
-  std::optional<Verified> result = RefineFrom(map, live, best.world_from_camera, options);
+  std::optional<Verified> result = Settle(map, live, best, options);
   if (!result) return std::nullopt;
-  result->key_frame = best.key_frame;
-  result->agreed = best.support;
-  result->agreed_share = best.share;
   // Two proposals may well lead to one pose.
   const double apart =
       (rival.world_from_camera.translation() - result->world_from_camera.translation()).norm();

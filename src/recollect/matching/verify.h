@@ -22,7 +22,8 @@ struct VerifyOptions {
   MatchOptions match;
   double ransac_px = 4;
   int ransac_iterations = 400;
-  int min_matches = 8;            // fewer are not tried, and fewer inliers prove nothing
+  int min_matches = 8;                       // fewer are not tried, and fewer inliers prove nothing
+  double expected_m = 20, expected_px = 60;  // how far off an expected pose may be
   double guided_px[2] = {16, 7};  // how far from its prediction a landmark is looked for, by round
   double guided_likeness = 0.68;  // cosine between descriptors, at least
 };
@@ -55,6 +56,12 @@ struct Verified {
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
                                      std::span<const int> proposals,
                                      const VerifyOptions& options = {});
+
+// The same where a pose is expected: at the key frame nearest to it, with those matches only that
+// lie about where it predicts them, which tells apart what repeats along a road.
+std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& live,
+                                       const SE3& world_from_camera,
+                                       const VerifyOptions& options = {});
 
 // The second half alone: from a pose that is about right, say a network's, which may be held to as
 // far as its covariance says.
