@@ -95,6 +95,33 @@ TEST_F(VerifyTest, FindsPosesFromTheRightPlaceAmongWrongOnes) {
   }
 }
 
+// A road that repeats after 5 m: each key frame is there twice. Landmarks fit at both places; which
+// one is meant is for the expected pose to say.
+TEST_F(VerifyTest, AnExpectedPoseTellsRepeatedPlacesApart) {
+  const Map map = Map::Open(folder_ / "depth.map");
+  MappedFrames frames = FramesOf(map);
+  const auto count = static_cast<int>(frames.world_from_camera.size());
+  const Eigen::Vector3d shift(5, 0, 0);
+  for (int key = 0; key < count; ++key) {
+    const SE3 pose = frames.world_from_camera[static_cast<std::size_t>(key)];
+    frames.world_from_camera.emplace_back(pose.rotation(), pose.translation() + shift);
+  }
+  frames.landmarks = [of_map = frames.landmarks, count](int key) { return of_map(key % count); };
+  for (const std::size_t frame : {std::size_t{8}, std::size_t{14}, std::size_t{20}}) {
+    SCOPED_TRACE(frame);
+    const SE3 truth = live_.WorldFromCamera(frame);
+    for (const double repeat : {0.0, 1.0}) {
+      const Eigen::Vector3d there = truth.translation() + repeat * shift;
+      const auto found = VerifyExpected(
+          frames, Live(frame), SE3(truth.rotation(), there + Eigen::Vector3d(0.4, 0.1, 0)));
+      ASSERT_TRUE(found);
+      EXPECT_LT((found->world_from_camera.translation() - there).norm(), 0.2);
+    }
+  }
+  EXPECT_FALSE(VerifyExpected(frames, Live(8),
+                              SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(500, 0, 0))));
+}
+
 TEST_F(VerifyTest, KnowsWhatItDoesNotKnow) {
   const Map map = Map::Open(folder_ / "depth.map");
   const MappedFrames frames = FramesOf(map);
