@@ -95,9 +95,9 @@ TEST_F(VerifyTest, FindsPosesFromTheRightPlaceAmongWrongOnes) {
   }
 }
 
-// A road that repeats after 5 m: each key frame is there twice. Landmarks fit at both places; which
-// one is meant is for the expected pose to say.
-TEST_F(VerifyTest, AnExpectedPoseTellsRepeatedPlacesApart) {
+// Each key frame is there twice, 5 m apart: the pose is found at the copy where it is expected. (Of
+// the bound on matches, expected_px, this says nothing.)
+TEST_F(VerifyTest, FindsThePoseWhereItIsExpected) {
   const Map map = Map::Open(folder_ / "depth.map");
   MappedFrames frames = FramesOf(map);
   const auto count = static_cast<int>(frames.world_from_camera.size());
