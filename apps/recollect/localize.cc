@@ -29,16 +29,17 @@ struct Options {
 struct Live {
   std::filesystem::path image;
   double time;
+  bool follows;  // on the one before, in the same drive
 };
 
 std::vector<Live> Gather(const Options& options) {
   std::vector<Live> live;
   for (const auto& image : options.images)
-    live.push_back({image, static_cast<double>(live.size())});
+    live.push_back({image, static_cast<double>(live.size()), false});
   for (const Lap& lap : options.laps.Read()) {
     for (const Frame& frame : lap.frames) {
       Require(!frame.left.empty(), lap.folder.string(), "has no images");
-      live.push_back({frame.left, frame.time});
+      live.push_back({frame.left, frame.time, &frame != &lap.frames.front()});
     }
   }
   Require(!live.empty(), "localize", "nothing to localise", "name images, or a lap with --lap");
@@ -114,6 +115,7 @@ void Run(const Options& options) {
   nlohmann::json figures = nlohmann::json::array();
   std::string csv = kCsvHead;
   for (const Live& one : live) {
+    if (!one.follows) localizer.Reset();
     const Localization answer = localizer.Localize(ReadColour(one.image), one.image.string());
     stamped.push_back({one.time, answer.world_from_camera});
     poses.push_back(answer.world_from_camera);

@@ -26,9 +26,10 @@ struct LocalizerFlags {
         ->check(CLI::IsMember({"auto", "cnn", "pnp", "fused"}))
         ->capture_default_str();
     command
-        .add_option("--filter", filter,
-                    "what geometry makes of the images before: bayes (they are of one drive, in\n"
-                    "order), or none (each image by itself)")
+        .add_option(
+            "--filter", filter,
+            "what geometry makes of the images before in a lap: bayes (a drive, in order),\n"
+            "or none (each image by itself, as images without a lap always are)")
         ->check(CLI::IsMember({"none", "bayes"}))
         ->capture_default_str();
   }

@@ -4,8 +4,9 @@
 
 namespace recollect::cnn {
 
-// Of a row of scores in float, in vectors; `count` at least one. Results are the same for every
-// number of threads, and may differ in the last bit between processors.
+// Of a row of `count` scores, at least one. Float is done in vectors, exp within 2 units in the
+// last place (scores 87 below the greatest count as that far below); it may differ in the last bit
+// between processors, never between numbers of threads. Double is plain, for checking gradients.
 
 // The greatest, and in `best` where it stands first.
 float Greatest(const float* scores, std::int64_t count, std::int64_t* best);

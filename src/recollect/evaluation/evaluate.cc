@@ -94,6 +94,7 @@ PoseError Compare(const SE3& world_from_estimate, const SE3& world_from_truth) {
 Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptions& options,
                     const ProgressSink& progress) {
   const Map& map = localizer.map();
+  localizer.Reset();
   std::vector<std::size_t> sampled = SampleFrames(live, options.spacing_m);
   LeaveOutMapped(map, live, options.leave_out, sampled);
   Require(sampled.size() >= 2, live.folder.string(), "has fewer than two frames to localise");

@@ -14,10 +14,12 @@ namespace recollect {
 // What the images before tell of where the next one was taken, when all come from one drive.
 class Drive {
  public:
-  // `map` must outlive it. Throws Error on options out of range.
+  // Throws Error on options out of range.
   Drive(const Map& map, const wnn::SequenceOptions& options);
 
-  // Where the last localised poses lead, in steady motion; none where they are unknown.
+  // Where the last localised poses lead, in steady motion: left camera in the map's world, metres,
+  // with the covariance of leaving it (rad and m in the camera's axes); none where they are
+  // unknown.
   std::optional<matching::PosePrior> Expected() const;
   // Key frames by the belief that the sequence of histograms has led to, this image's the last of
   // them: one call an image. Most likely first, at most `count`.
