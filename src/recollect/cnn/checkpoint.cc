@@ -9,8 +9,8 @@
 namespace recollect::cnn {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CurvePoint, step, epoch, seconds, learning_rate, loss,
-                                   projection_m, correspondence, depth, valid_position_m,
-                                   valid_heading_deg)
+                                   projection_m, correspondence, depth, train_position_m,
+                                   valid_position_m, valid_heading_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainingState, step, seconds_before, best_m, without_gain, curve,
                                    options)
 
@@ -50,11 +50,12 @@ void WriteCurve(const std::filesystem::path& path, const std::vector<CurvePoint>
   if (path.empty()) return;
   std::string text =
       "step,epoch,seconds,learning_rate,loss,projection_m,correspondence,depth,"
-      "valid_position_m,valid_heading_deg\n";
+      "valid_position_m,valid_heading_deg,train_position_m\n";
   for (const CurvePoint& p : curve) {
-    text += fmt::format("{},{:.4f},{:.1f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n",
-                        p.step, p.epoch, p.seconds, p.learning_rate, p.loss, p.projection_m,
-                        p.correspondence, p.depth, p.valid_position_m, p.valid_heading_deg);
+    text += fmt::format(
+        "{},{:.4f},{:.1f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", p.step,
+        p.epoch, p.seconds, p.learning_rate, p.loss, p.projection_m, p.correspondence, p.depth,
+        p.valid_position_m, p.valid_heading_deg, p.train_position_m);
   }
   AtomicWrite(path, text);
 }

@@ -34,12 +34,14 @@ class LossMeans {
     add(sum_.projection_m, losses.projection);
     add(sum_.correspondence, losses.correspondence);
     add(sum_.depth, losses.depth);
+    add(sum_.train_position_m, losses.position_m);
     ++count_;
   }
   CurvePoint Take() {
     CurvePoint mean = std::exchange(sum_, {});
     const double count = std::max(1, std::exchange(count_, 0));
-    for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth}) {
+    for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth,
+                          &mean.train_position_m}) {
       *value /= count;
     }
     return mean;

@@ -101,6 +101,10 @@ TEST_F(TrainerTest, WritesTheBestModelAndItsCurve) {
   ASSERT_FALSE(result.curve.empty());
   double best = 1e9;
   for (const CurvePoint& point : result.curve) best = std::min(best, point.valid_position_m);
+  // Training pairs are of 5 m at most, and what was learnt of them shows.
+  EXPECT_LT(result.curve.front().train_position_m, 5);
+  EXPECT_GT(result.curve.back().train_position_m, 0);
+  EXPECT_LT(result.curve.back().train_position_m, result.curve.front().train_position_m);
   const ModelInfo info = PoseNetwork::Load(options.out, 1).info();
   EXPECT_EQ(info.validation.position_mean_m, best);
   EXPECT_EQ(info.laps, std::vector<std::string>{"lap-0"});

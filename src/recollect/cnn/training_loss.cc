@@ -33,6 +33,7 @@ Losses TrainingLoss::operator()(const Prediction& prediction, const Batch& batch
   losses.projection = ProjectionLoss(prediction.motion, batch.motion, points,
                                      batch.depth.flatten(1) > 0, options_.far_metres);
   losses.total = losses.projection;
+  losses.position_m = (prediction.motion - batch.motion).detach().select(2, 3).norm(2, 1).mean();
   if (!prediction.total.defined()) return losses;
 
   const torch::Tensor cell_depth = EveryCell(batch.depth).flatten(1);

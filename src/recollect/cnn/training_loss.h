@@ -16,6 +16,7 @@ struct Losses {
   torch::Tensor projection;      // the paper's, metres
   torch::Tensor correspondence;  // cross-entropy, nats
   torch::Tensor depth;           // mean |log predicted / true|
+  torch::Tensor position_m;      // mean distance of predicted from true position; not in the total
 };
 
 // The losses of the options for pairs of one camera.

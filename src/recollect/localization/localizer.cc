@@ -16,6 +16,8 @@ namespace {
 // What a network or a drive predicts is further off than what geometry finds by itself.
 constexpr double kWideSearchPx = 30;
 
+constexpr std::size_t kVotesKept = 5;
+
 // Within three standard deviations, in position.
 bool IsNear(const matching::PosePrior& expected, const SE3& world_from_camera) {
   const double sigma_m = std::sqrt(expected.covariance(5, 5));
@@ -75,6 +77,9 @@ Localization Localizer::Localize(const cv::Mat& image, const std::string& name) 
   const wnn::Recollection recollection = Recollect(image, name);
   answer.key_frame = answer.place = recollection.winner;
   answer.confidence = recollection.confidence;
+  const std::size_t kept = std::min<std::size_t>(kVotesKept, recollection.histogram.size());
+  answer.votes.assign(recollection.histogram.begin(),
+                      recollection.histogram.begin() + static_cast<std::ptrdiff_t>(kept));
   answer.ms.recollect = step.Milliseconds();
 
   // Section III: G_L = G_K T(delta), T(delta) by the siamese network (III-B) or from landmarks.

@@ -47,6 +47,7 @@ struct Localization {
   int place = -1;          // the key frame that stands for the answer's place once it is verified
   SE3 keyframe_from_live;  // T(delta): world_from_camera as seen from key_frame
   double confidence = 0;   // the committee's: (votes of the first - of the second) / of the first
+  std::vector<wnn::LabelVotes> votes;  // of the key frames with most, at most five
   // Of world_from_camera: the truth is world_from_camera * Exp(xi), xi ~ N(0, covariance), rotation
   // first: rad and m in the camera's axes. Of the network: its errors on its validation pairs.
   Matrix6d covariance = Matrix6d::Zero();
