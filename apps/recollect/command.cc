@@ -26,6 +26,23 @@ void WriteFigures(const Common& common, const nlohmann::json& figures) {
   if (!common.json.empty()) AtomicWrite(common.json, figures.dump(2) + "\n");
 }
 
+std::string CommandLine() {
+  const std::string arguments = ReadFile("/proc/self/cmdline");
+  std::string line;
+  for (std::size_t at = 0; at < arguments.size();) {
+    const std::string argument = arguments.c_str() + at;
+    at += argument.size() + 1;
+    const bool plain =
+        !argument.empty() && argument.find_first_of(" \t\"'$\\;&|<>*?()") == std::string::npos;
+    line += (line.empty() ? "" : " ") + (plain ? argument : "'" + argument + "'");
+  }
+  return line;
+}
+
+std::filesystem::path ProgramFolder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
 ProgressSink TerminalProgress() {
   if (isatty(STDERR_FILENO) == 0) return {};
   struct State {

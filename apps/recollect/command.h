@@ -28,6 +28,12 @@ CLI::App* AddCommand(CLI::App& parent, const std::string& name, const std::strin
 // Writes the figures to common.json where that was asked for.
 void WriteFigures(const Common& common, const nlohmann::json& figures);
 
+// What was typed, as one line for a shell.
+std::string CommandLine();
+
+// Where the program itself lies.
+std::filesystem::path ProgramFolder();
+
 // A line on the terminal with stage, share done, rate and time left; quiet where standard error
 // is not a terminal.
 ProgressSink TerminalProgress();

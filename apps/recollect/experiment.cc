@@ -38,6 +38,7 @@ void AddExperiment(CLI::App& app) {
   experiment->require_subcommand(1);
   AddExperimentTables(*experiment);
   AddExperimentPairs(*experiment);
+  AddExperimentPaper(*experiment);
   AddExperimentLabels(*experiment);
   AddExperimentPlaces(*experiment);
   AddExperimentAblation(*experiment);

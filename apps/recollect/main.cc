@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", RECOLLECT_VERSION);
   using namespace recollect::app;
+  AddCompare(app);
   AddDataset(app);
   AddDemo(app);
   AddDepth(app);

@@ -35,6 +35,15 @@ std::size_t Nearest(const std::vector<SE3>& poses, const SE3& pose) {
   return best;
 }
 
+std::vector<std::size_t> EveryOf(const std::vector<std::size_t>& frames, int every) {
+  Require(every >= 1, "every", fmt::format("{} is less than 1", every));
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(every)) {
+    kept.push_back(frames[i]);
+  }
+  return kept;
+}
+
 int Apart(std::size_t a, std::size_t b) {
   return std::abs(static_cast<int>(a) - static_cast<int>(b));
 }
@@ -97,6 +106,7 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
   localizer.Reset();
   std::vector<std::size_t> sampled = SampleFrames(live, options.spacing_m);
   LeaveOutMapped(map, live, options.leave_out, sampled);
+  sampled = EveryOf(sampled, options.every);
   Require(sampled.size() >= 2, live.folder.string(), "has fewer than two frames to localise");
 
   std::vector<SE3> key_poses, place_poses, live_poses;

@@ -69,7 +69,8 @@ enum class LeaveOut {
 };
 
 struct EvaluationOptions {
-  double spacing_m = 1;         // the live lap is thinned to this
+  double spacing_m = 1;         // the live lap is thinned to this,
+  int every = 1;                // and of what is left each so many-th is localised
   double good_retrieval_m = 5;  // see Evaluation::rows_good_retrieval
   LeaveOut leave_out = LeaveOut::kNone;
 };

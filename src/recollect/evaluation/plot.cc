@@ -1,36 +1,11 @@
-#include <cstdio>
-#include <cstdlib>
+#include <fmt/format.h>
 
-#include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/evaluation/gnuplot.h"
 #include "recollect/evaluation/report.h"
+#include "recollect/evaluation/run_json.h"
 
 namespace recollect {
-namespace {
-
-void RunGnuplot(const std::string& script, const std::filesystem::path& where) {
-  FILE* pipe = popen("gnuplot 2>/dev/null", "w");
-  Require(pipe != nullptr, where.string(), "gnuplot cannot be started");
-  const bool written = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  const int status = pclose(pipe);
-  Require(written && status == 0, where.string(), "gnuplot could not draw it",
-          "install it with: apt-get install gnuplot-nox");
-}
-
-// The two world axes in which the route extends most, in order: the plan of a world with z up, and
-// of one whose axes are a camera's as well.
-std::pair<int, int> PlanAxes(const Evaluation& e) {
-  Eigen::Vector3d low = e.frames.front().true_world_from_camera.translation(), high = low;
-  for (const LiveFrame& f : e.frames) {
-    low = low.cwiseMin(f.true_world_from_camera.translation());
-    high = high.cwiseMax(f.true_world_from_camera.translation());
-  }
-  int flat = 0;
-  (high - low).minCoeff(&flat);
-  return {flat == 0 ? 1 : 0, flat == 2 ? 1 : 2};
-}
-
-}  // namespace
 
 void PlotEvaluation(const Evaluation& e, const Map& map, const std::filesystem::path& png) {
   const auto [x, y] = PlanAxes(e);

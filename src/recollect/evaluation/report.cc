@@ -141,20 +141,26 @@ void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
   AtomicWrite(file, csv);
 }
 
-void WriteReport(const Evaluation& e, const Map& map, const std::filesystem::path& folder) {
+void WriteTrajectories(const Evaluation& e, const std::filesystem::path& folder) {
   std::vector<StampedPose> estimates, truths;
-  std::vector<SE3> estimated_poses;
+  std::vector<SE3> estimated_poses, true_poses;
   for (const LiveFrame& f : e.frames) {
     estimates.push_back({f.time, f.answer.world_from_camera});
     truths.push_back({f.time, f.true_world_from_camera});
     estimated_poses.push_back(f.answer.world_from_camera);
+    true_poses.push_back(f.true_world_from_camera);
   }
+  WriteTumTrajectory(folder / "estimate.tum", estimates);
+  WriteTumTrajectory(folder / "truth.tum", truths);
+  WriteKittiPoses(folder / "estimate.kitti", estimated_poses);
+  WriteKittiPoses(folder / "truth.kitti", true_poses);
+}
+
+void WriteReport(const Evaluation& e, const Map& map, const std::filesystem::path& folder) {
   AtomicWrite(folder / "table.txt", FormatTable(e));
   AtomicWrite(folder / "figures.json", ToFigures(e).dump(2) + "\n");
   WriteFramesCsv(e, folder / "frames.csv");
-  WriteTumTrajectory(folder / "estimate.tum", estimates);
-  WriteKittiPoses(folder / "estimate.kitti", estimated_poses);
-  WriteTumTrajectory(folder / "truth.tum", truths);
+  WriteTrajectories(e, folder);
   PlotEvaluation(e, map, folder / "evaluation.png");
 }
 

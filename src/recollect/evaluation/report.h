@@ -24,8 +24,12 @@ void WriteFramesCsv(const Evaluation& evaluation, const std::filesystem::path& f
 // along the way. Drawn by gnuplot; throws Error, with what to install, where that is missing.
 void PlotEvaluation(const Evaluation& evaluation, const Map& map, const std::filesystem::path& png);
 
-// All of it into a folder: evaluation.png, table.txt, figures.json, frames.csv, and the estimated
-// poses of the left camera as estimate.tum and estimate.kitti, the true ones as truth.tum.
+// Poses of the left camera, estimated and true, as estimate.tum, estimate.kitti, truth.tum and
+// truth.kitti of a folder.
+void WriteTrajectories(const Evaluation& evaluation, const std::filesystem::path& folder);
+
+// All of it into a folder: evaluation.png, table.txt, figures.json, frames.csv and the
+// trajectories.
 void WriteReport(const Evaluation& evaluation, const Map& map, const std::filesystem::path& folder);
 
 }  // namespace recollect

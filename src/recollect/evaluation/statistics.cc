@@ -42,4 +42,17 @@ Summary Summarise(const std::vector<double>& values) {
           sorted.back()};
 }
 
+Box BoxOf(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  const std::vector<double> sorted = Sorted(values);
+  Box box;
+  box.q1 = QuantileOfSorted(sorted, 0.25);
+  box.median = QuantileOfSorted(sorted, 0.5);
+  box.q3 = QuantileOfSorted(sorted, 0.75);
+  const double reach = 1.5 * (box.q3 - box.q1);
+  box.low = *std::lower_bound(sorted.begin(), sorted.end(), box.q1 - reach);
+  box.high = *std::prev(std::upper_bound(sorted.begin(), sorted.end(), box.q3 + reach));
+  return box;
+}
+
 }  // namespace recollect

@@ -17,4 +17,11 @@ double Quantile(std::vector<double> values, double q);
 
 Summary Summarise(const std::vector<double>& values);
 
+// What a box plot draws: quartiles, and whiskers to the outermost values that are no further from
+// the box than one and a half times its length (Tukey 1977). All zero for no values.
+struct Box {
+  double low = 0, q1 = 0, median = 0, q3 = 0, high = 0;
+};
+Box BoxOf(const std::vector<double>& values);
+
 }  // namespace recollect

@@ -20,6 +20,16 @@ TEST(Statistics, AgreeWithValuesWorkedOutByHand) {
   EXPECT_DOUBLE_EQ(Quantile({1, 2}, 0.5), 1.5);
 }
 
+TEST(Box, ReachesToTheLastValuesThatAreNoOutliers) {
+  const Box box = BoxOf({0, 10, 11, 12, 13, 14, 30});
+  EXPECT_DOUBLE_EQ(box.q1, 10.5);
+  EXPECT_DOUBLE_EQ(box.median, 12);
+  EXPECT_DOUBLE_EQ(box.q3, 13.5);
+  EXPECT_DOUBLE_EQ(box.low, 10);  // 10.5 - 1.5 * 3 = 6: 0 is beyond, 10 the last within
+  EXPECT_DOUBLE_EQ(box.high, 14);
+  EXPECT_EQ(BoxOf({}).high, 0);
+}
+
 TEST(Statistics, OfNothingAreZeroAndOfNaNAnError) {
   EXPECT_EQ(Summarise({}).count, 0u);
   EXPECT_EQ(Quantile({}, 0.5), 0);
