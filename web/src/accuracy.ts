@@ -21,7 +21,7 @@ export const accuracy = (systems: Accuracy[]) =>
         valueFormatter: (value) => `${Number(value).toFixed(1)} %`,
       },
       xAxis: axis(t, 'Maximum Allowed Error', { type: 'value', minInterval: 1 }),
-      yAxis: axis(t, 'images, %', { type: 'value', max: 100, scale: true, nameGap: 40 }),
+      yAxis: axis(t, 'images, %', { type: 'value', min: 0, max: 100, nameGap: 40 }),
       series: systems.flatMap((system, number) =>
         looks.map(([key, reading, type]) => ({
           type: 'line' as const,

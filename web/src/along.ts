@@ -38,10 +38,10 @@ export function along(frames: Frames, rows: Row[], look: (frame: number) => void
         type: 'line' as const,
         name: row.label,
         color: colour(row.name),
-        symbol: 'circle',
+        symbol: frames.frame.length > 600 ? 'none' : 'circle', // symbols take long to draw
         symbolSize: 3,
         lineStyle: { width: 1.2 },
-        sampling: undefined,
+        animation: false,
         data: frames.errors[row.name].map((error, i) => [
           frames.distance_m[i],
           error === null ? null : Math.max(least, error),

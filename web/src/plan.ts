@@ -69,6 +69,8 @@ export function plan(run: Run, look: (frame: number) => void, lookKey: (key: num
             name: 'key frames',
             symbol: 'diamond',
             symbolSize: 5,
+            large: true,
+            largeThreshold: 1000,
             color: '#7d8597',
             data: run.keys.at,
             tooltip: {
@@ -81,7 +83,9 @@ export function plan(run: Run, look: (frame: number) => void, lookKey: (key: num
           {
             type: 'scatter',
             name: 'live images',
-            symbolSize: 6,
+            symbolSize: 8,
+            large: true,
+            largeThreshold: 1000,
             color: t.text,
             data: truth,
             tooltip: { formatter: (one) => said((one as { dataIndex: number }).dataIndex) },
@@ -89,7 +93,7 @@ export function plan(run: Run, look: (frame: number) => void, lookKey: (key: num
           {
             type: 'scatter',
             name: 'estimates',
-            symbolSize: 6,
+            symbolSize: 5,
             color: 'hsl(150, 65%, 45%)',
             data: estimate.map((value, i) => ({
               value,

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/evaluation/data_hash.h"
 
 namespace recollect {
 namespace {
@@ -60,6 +62,13 @@ TEST_F(ArtefactsTest, AreMadeAnewWhereFilesAreGoneOrChanged) {
   EXPECT_EQ(Do(stamp_)["done"], 3);
   AtomicWrite(folder_ / "map.json", "{\"key\": \"cut sh");
   EXPECT_EQ(Do(stamp_)["done"], 4);
+}
+
+TEST(Hash, IsFnv1a) {
+  EXPECT_EQ(Hash().Text(), "cbf29ce484222325");  // of nothing, as the algorithm is published
+  EXPECT_EQ(Hash().Add("a").Text(), "af63dc4c8601ec8c");
+  EXPECT_EQ(Hash().Add("foo").Add("bar").Text(), "85944171f73967e8");
+  EXPECT_THROW(HashOfFile("no/such/file"), Error);
 }
 
 TEST_F(ArtefactsTest, NothingIsLeftOfAStepThatFails) {

@@ -1,7 +1,8 @@
 #include "recollect/evaluation/data_hash.h"
 
+#include <fstream>
+
 #include "recollect/core/error.h"
-#include "recollect/core/files.h"
 
 namespace recollect {
 namespace {
@@ -36,7 +37,16 @@ Hash& Hash::Add(std::string_view bytes) {
 std::string Hash::Text() const { return fmt::format("{:016x}", state_); }
 
 std::string HashOfFile(const std::filesystem::path& file) {
-  return Hash().Add(ReadFile(file)).Text();
+  std::ifstream in(file, std::ios::binary);
+  Require(in.is_open(), file.string(), "cannot be read");
+  Hash hash;
+  std::string piece(1 << 20, '\0');  // maps are large
+  while (in) {
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    hash.Add(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
+  }
+  Require(in.eof(), file.string(), "cannot be read");
+  return hash.Text();
 }
 
 std::string HashOf(const std::vector<Lap>& laps) {

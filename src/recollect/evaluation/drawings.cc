@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "recollect/core/files.h"
@@ -49,7 +50,7 @@ std::string Title(const json& run, const std::string& what) {
 void DrawAccuracy(const json& run, const std::filesystem::path& folder) {
   Drawing drawing;
   drawing.Say(Title(run, "Place recognition"));
-  drawing.Say("set xlabel 'Maximum Allowed Error'\nset ylabel 'images, %'\nset yrange [:100]");
+  drawing.Say("set xlabel 'Maximum Allowed Error'\nset ylabel 'images, %'\nset yrange [0:100]");
   int number = 0;
   for (const json& system : run["places"]["systems"]) {
     for (const auto& [key, reading, dash] : {std::tuple{"within_labels", "mapped places", 1},
@@ -124,8 +125,10 @@ void DrawAlong(const json& run, const std::filesystem::path& folder) {
   drawing.Say(Title(run, "Position error along the route"));
   drawing.Say("set xlabel 'metres along the route'\nset ylabel 'm'\nset logscale y");
   const json& frames = run["frames"];
+  const std::set<std::string> readable = {"gps", "system", "pnp", "fused", "retrieval"};
   for (const json& row : run["rows"]) {
     const std::string name = row["name"].get<std::string>();
+    if (!readable.contains(name)) continue;
     std::string rows;
     for (std::size_t i = 0; i < frames["distance_m"].size(); ++i) {
       const json& error = frames["errors"][name][i];

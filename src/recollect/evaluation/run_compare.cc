@@ -59,14 +59,15 @@ json CompareRuns(const std::vector<json>& runs, const std::vector<std::string>& 
   json comparison = {{"runs", json::array()}, {"paired", json::array()}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const json& run = runs[i];
-    json rows = json::object();
+    json rows = json::array();
     for (const json& row : run["rows"]) {
       const std::string name = row["name"].get<std::string>();
-      rows[name] = {{"label", row["label"]},
-                    {"mean", row["mean"]},
-                    {"median", row["median"]},
-                    {"p95", row["p95"]},
-                    {"availability", row["availability"]}};
+      rows.push_back({{"name", name},
+                      {"label", row["label"]},
+                      {"mean", row["mean"]},
+                      {"median", row["median"]},
+                      {"p95", row["p95"]},
+                      {"availability", row["availability"]}});
       if (i == 0 || !SameFrames(run, runs[0])) continue;
       if (!runs[0]["frames"]["errors"].contains(name)) continue;
       const json pair = Paired(run, runs[0], name, names[i], bootstrap);
@@ -85,14 +86,14 @@ json CompareRuns(const std::vector<json>& runs, const std::vector<std::string>& 
 
 std::string FormatComparison(const json& comparison) {
   std::string text;
-  std::vector<std::pair<std::string, std::string>> rows;  // name, label
+  std::vector<std::string> labels;
   for (const json& run : comparison["runs"]) {
     text += fmt::format("{}: {} {} images, data {}, seed {}\n", run["name"].get<std::string>(),
                         run["frames"].get<std::size_t>(), run["images"].get<std::string>(),
                         run["data_hash"].get<std::string>(), run["seed"].get<std::uint64_t>());
-    for (const auto& [name, row] : run["rows"].items()) {
-      const std::pair entry{name, row["label"].get<std::string>()};
-      if (std::find(rows.begin(), rows.end(), entry) == rows.end()) rows.push_back(entry);
+    for (const json& row : run["rows"]) {
+      const std::string label = row["label"].get<std::string>();
+      if (std::find(labels.begin(), labels.end(), label) == labels.end()) labels.push_back(label);
     }
   }
   for (const char* figure : {"mean", "p95"}) {
@@ -101,11 +102,13 @@ std::string FormatComparison(const json& comparison) {
       text += fmt::format("{:>28}", run["name"].get<std::string>());
     }
     text += '\n';
-    for (const auto& [name, label] : rows) {
+    for (const std::string& label : labels) {
       text += fmt::format("  {:<20}", label);
       for (const json& run : comparison["runs"]) {
-        text += fmt::format("{:>28}",
-                            run["rows"].contains(name) ? Text(run["rows"][name][figure]) : "-");
+        const json& rows = run["rows"];
+        const auto row = std::find_if(rows.begin(), rows.end(),
+                                      [&](const json& one) { return one["label"] == label; });
+        text += fmt::format("{:>28}", row == rows.end() ? "-" : Text((*row)[figure]));
       }
       text += '\n';
     }

@@ -14,7 +14,8 @@ namespace recollect {
 // Throws Error naming the file where it is no run.
 nlohmann::json ReadRun(const std::filesystem::path& file);
 
-// {runs: [{name, images, data_hash, seed, rows: {ROW: {mean, median, p95, availability}}, places}],
+// {runs: [{name, images, data_hash, seed, rows: [{name, label, mean, median, p95, availability}],
+//          places}],
 // paired: [{run, row, frames, difference}]}: of each later run the rows less those of the first,
 // frame by frame, where both are of the same data and live images. `names` as the table says them.
 nlohmann::json CompareRuns(const std::vector<nlohmann::json>& runs,

@@ -192,10 +192,11 @@ json AccuracyJson(const std::string& name, const PlaceTask& task, std::size_t le
 json TrainingJson(const cnn::ModelInfo& model, const std::vector<cnn::CurvePoint>& curve,
                   bool trained_here) {
   json points = json::array();
+  const auto known = [](double value) { return std::isnan(value) ? json() : json(value); };
   for (const cnn::CurvePoint& p : curve) {
     points.push_back({{"step", p.step},
                       {"loss", p.loss},
-                      {"train_position_m", p.train_position_m},  // null where it is not known (NaN)
+                      {"train_position_m", known(p.train_position_m)},
                       {"valid_position_m", p.valid_position_m}});
   }
   return {{"network", cnn::Name(model.network)},
