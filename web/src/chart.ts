@@ -9,7 +9,7 @@ import * as echarts from 'echarts/core';
 import type { EChartsOption } from 'echarts';
 import { CanvasRenderer } from 'echarts/renderers';
 import { el } from './dom';
-import { dark, theme, type Theme } from './theme';
+import { dark, print, theme, type Theme } from './theme';
 
 echarts.use([
   BarChart,
@@ -29,10 +29,10 @@ export type Options = (theme: Theme, chart: Chart) => EChartsOption;
 
 const drawn: { chart: Chart; options: Options }[] = [];
 
-function draw(printing = false) {
+function draw() {
   for (const { chart, options } of drawn) {
     chart.resize();
-    chart.setOption(options(theme(printing), chart));
+    chart.setOption(options(theme(), chart));
   }
 }
 
@@ -44,7 +44,7 @@ export function figure(name: string, height: number, options: Options, caption: 
   const start = (): Chart => {
     const chart = echarts.init(box);
     drawn.push({ chart, options });
-    chart.setOption(options(theme(false), chart));
+    chart.setOption(options(theme(), chart));
     return chart;
   };
   return { element, start };
@@ -55,9 +55,7 @@ window.addEventListener('resize', () => {
   if (width !== window.innerWidth) draw();
   width = window.innerWidth;
 });
-dark.addEventListener('change', () => draw());
-window.addEventListener('beforeprint', () => draw(true));
-window.addEventListener('afterprint', () => draw());
+for (const query of [dark, print]) query.addEventListener('change', draw);
 
 export const text = (t: Theme) => ({ color: t.text, fontSize: 12 });
 

@@ -8,8 +8,11 @@ export interface Theme {
 
 export const dark = window.matchMedia('(prefers-color-scheme: dark)');
 
-export function theme(printing: boolean): Theme {
-  if (dark.matches && !printing) {
+export const print = window.matchMedia('print');
+
+// Paper is always light.
+export function theme(): Theme {
+  if (dark.matches && !print.matches) {
     return { text: '#e4e7eb', faint: '#9aa5b1', line: '#3a4550', paper: '#161b21' };
   }
   return { text: '#1f2933', faint: '#616e7c', line: '#d3d9e0', paper: '#ffffff' };

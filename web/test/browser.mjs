@@ -88,6 +88,13 @@ try {
   const paper = await page.evaluate(() => getComputedStyle(document.querySelector('section')).backgroundColor);
   check(paper !== 'rgb(255, 255, 255)', `dark is not dark: ${paper}`);
   if (screenshots) await page.screenshot({ path: `${screenshots}/dark.png`, fullPage: true });
+  // Paper is light, whatever the screen is.
+  await page.emulateMedia({ colorScheme: 'dark', media: 'print' });
+  await page.waitForTimeout(200);
+  const ink = await page.evaluate(
+    () => window.recollect.charts.boxes.getOption().xAxis[0].axisLabel.color,
+  );
+  check(ink === '#1f2933', `charts are printed in ${ink}`);
   const pdf = await page.pdf({ format: 'A4' });
   check(pdf.length > 20000, 'prints nothing');
   if (screenshots) (await import('node:fs')).writeFileSync(`${screenshots}/print.pdf`, pdf);

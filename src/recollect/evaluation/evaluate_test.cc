@@ -87,6 +87,12 @@ TEST_F(EvaluateTest, SetsTheSystemBesideItsBaselines) {
   EXPECT_NEAR(e.rows[4].availability, 9.0 / 20, 1e-12);
   EXPECT_NEAR(e.rows[4].position_m.max, 0.5, 1e-9);
   EXPECT_GE(e.within_labels.at(1), 0.65);
+  for (const LiveFrame& f : e.frames) {
+    ASSERT_FALSE(f.answer.votes.empty());
+    EXPECT_LE(f.answer.votes.size(), 5u);
+    EXPECT_EQ(f.answer.votes.front().label, f.answer.key_frame);
+    EXPECT_GE(f.answer.votes.front().votes, f.answer.votes.back().votes);
+  }
   EXPECT_EQ(e.within_labels.at(10), 1);
 }
 
