@@ -65,7 +65,7 @@ export const axis = (t: Theme, name: string, more: object = {}) => ({
   nameGap: 32,
   nameTextStyle: text(t),
   axisLabel: text(t),
-  axisLine: { show: true, lineStyle: { color: t.faint } },
+  axisLine: { show: true, onZero: false, lineStyle: { color: t.faint } },
   splitLine: { lineStyle: { color: t.line } },
   ...more,
 });

@@ -66,22 +66,6 @@ export function plan(run: Run, look: (frame: number) => void, lookKey: (key: num
           },
           {
             type: 'scatter',
-            name: 'key frames',
-            symbol: 'diamond',
-            symbolSize: 5,
-            large: true,
-            largeThreshold: 1000,
-            color: '#7d8597',
-            data: run.keys.at,
-            tooltip: {
-              formatter: (one) => {
-                const key = (one as { dataIndex: number }).dataIndex;
-                return `key frame ${key}: ${run.keys.lap[key]}, image ${run.keys.frame[key]}`;
-              },
-            },
-          },
-          {
-            type: 'scatter',
             name: 'live images',
             symbolSize: 8,
             large: true,
@@ -89,6 +73,22 @@ export function plan(run: Run, look: (frame: number) => void, lookKey: (key: num
             color: t.text,
             data: truth,
             tooltip: { formatter: (one) => said((one as { dataIndex: number }).dataIndex) },
+          },
+          {
+            type: 'scatter',
+            name: 'key frames',
+            symbol: 'diamond',
+            symbolSize: 8,
+            large: true,
+            largeThreshold: 1000,
+            color: '#e09f3e',
+            data: run.keys.at,
+            tooltip: {
+              formatter: (one) => {
+                const key = (one as { dataIndex: number }).dataIndex;
+                return `key frame ${key}: ${run.keys.lap[key]}, image ${run.keys.frame[key]}`;
+              },
+            },
           },
           {
             type: 'scatter',
