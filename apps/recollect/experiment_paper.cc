@@ -101,6 +101,9 @@ void AddExperimentPaper(CLI::App& experiment) {
   command->add_option("--every", paper.evaluation.every, "localise each so many-th live image")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command->add_option("--live-spacing", paper.live_spacing_m,
+                      "metres between live images; default: 1, all of laps that were rendered by\n"
+                      "recollect simulate");
   command->add_option("--spacing", paper.spacing_m, "metres between key frames of a lap")
       ->capture_default_str();
   command

@@ -69,9 +69,11 @@ class Paper {
         options_(options),
         progress_(progress),
         split_(ChooseSplit(laps, options.laps)),
+        how_(options.evaluation),
         images_(ImagesOf(options, laps, split_)),
         stamp_(options.stamp),
         pool_(options.threads) {
+    how_.spacing_m = options.live_spacing_m.value_or(IsSimulated(laps[split_.test]) ? 0 : 1);
     for (const Lap& lap : laps) {
       Require(!lap.frames.empty() && !lap.frames.front().left.empty(), lap.folder.string(),
               "holds poses without images");
@@ -116,10 +118,9 @@ class Paper {
           "with each other on one world, and prove nothing about the real one.");
     }
     if (split_.of_the_paper) notes.push_back("Splits as in the paper (Forechi et al. 2018).");
-    if (options_.evaluation.every > 1) {
+    if (how_.every > 1) {
       notes.push_back(
-          fmt::format("Of the live images, one a {} m, every {}th was localised, each by itself.",
-                      options_.evaluation.spacing_m, options_.evaluation.every));
+          fmt::format("Of the live images every {}th was localised, each by itself.", how_.every));
     }
     return notes;
   }
@@ -205,17 +206,16 @@ class Paper {
   PlaceTask Places(const std::vector<Lap>& mapped) const {
     const auto registration = options_.data / kRegistrationFile;
     const Lap& live = laps_[split_.test];
-    if (std::filesystem::exists(registration)) {
+    if (split_.of_the_paper && std::filesystem::exists(registration)) {
       return PlacesByRegistration(ReadRegistration(registration), mapped, live);
     }
-    return PlacesByNearest(mapped, std::span(&live, 1), options_.spacing_m,
-                           options_.evaluation.spacing_m);
+    return PlacesByNearest(mapped, std::span(&live, 1), options_.spacing_m, how_.spacing_m);
   }
 
   // Accuracy when one lap was learnt, and when all were (Forechi et al. 2018, figure 4).
   json PlacesStep() {
     const json inputs = {parts_, ToJson(options_.recogniser), options_.spacing_m,
-                         options_.statistics.segment_m, options_.evaluation.spacing_m};
+                         options_.statistics.segment_m, how_.spacing_m};
     return artefacts_->Step("places", inputs, [&] {
       const std::vector<Lap> mapped = Those(split_.map);
       const PlaceTask task = Places(mapped);
@@ -236,22 +236,20 @@ class Paper {
   }
 
   json LocaliseStep() {
-    const EvaluationOptions& how = options_.evaluation;
-    const json inputs = {artefacts_->Key("map"), artefacts_->Key("train"), how.spacing_m, how.every,
-                         options_.statistics.segment_m};
+    const json inputs = {artefacts_->Key("map"), artefacts_->Key("train"), how_.spacing_m,
+                         how_.every, options_.statistics.segment_m};
     return artefacts_->Step(
         "localise", inputs,
         [&] {
           const Map map = Map::Open(artefacts_->Path(kMapFile));
           LocalizerOptions localizer_options;
           // Steps of several metres are no drive: each image by itself then.
-          if (how.every == 1) localizer_options.sequence.emplace();
+          if (how_.every == 1) localizer_options.sequence.emplace();
           Localizer localizer(map, Network(), pool_, localizer_options);
-          const Evaluation evaluation =
-              Evaluate(localizer, laps_[split_.test], options_.evaluation, progress_);
+          const Evaluation evaluation = Evaluate(localizer, laps_[split_.test], how_, progress_);
           WriteTrajectories(evaluation, options_.out);
           WriteFramesCsv(evaluation, artefacts_->Path("frames.csv"));
-          return EvaluationJson(evaluation, map, how, options_.statistics);
+          return EvaluationJson(evaluation, map, how_, options_.statistics);
         },
         {"frames.csv", "estimate.tum", "estimate.kitti", "truth.tum", "truth.kitti"});
   }
@@ -281,6 +279,7 @@ class Paper {
   const PaperOptions& options_;
   const ProgressSink& progress_;
   const PaperSplit split_;
+  EvaluationOptions how_;
   const std::string images_;
   RunStamp stamp_;
   ThreadPool pool_;

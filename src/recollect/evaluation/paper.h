@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct PaperOptions {
   cnn::TrainOptions train = cnn::TrainOptions::Compact();
   std::filesystem::path model;  // a trained one, instead of training
   std::filesystem::path curve;  // the trainer's CSV of that
-  EvaluationOptions evaluation;
+  // Between live images. None: 1 m, but all of a lap that was rendered, a spacing of its own apart.
+  std::optional<double> live_spacing_m;
+  EvaluationOptions evaluation;  // its spacing_m is that
   RunStatistics statistics;
   RunStamp stamp;  // command, seed, and the program's own version
   int threads = 0;
