@@ -90,8 +90,7 @@ void Run(PlaceFlags flags) {
   LearntPlaces learnt(places, flags.network, pool);
   const wnn::Calibration calibration =
       wnn::Calibrate(places.route, learnt.Trials(pool, {.seed = flags.common.seed}, progress));
-  flags.sequence.floor = calibration.floor;
-  flags.sequence.trust = calibration.trust;
+  flags.sequence.votes = calibration.votes;
   const auto answers = AnswerLive(learnt, live.front(), flags.live_spacing_m, flags.sequence,
                                   calibration, pool, progress);
   Require(static_cast<std::size_t>(flags.from) <= answers.size(), "--from",
@@ -121,8 +120,9 @@ void Run(PlaceFlags flags) {
       {"auc", curve.auc},
       {"recall_at_100_precision", curve.recall_at_100_precision},
       {"calibration",
-       {{"floor", calibration.floor},
-        {"trust", calibration.trust},
+       {{"floor", calibration.votes.floor},
+        {"trust", calibration.votes.trust},
+        {"sharpness", calibration.votes.sharpness},
         {"weights", calibration.weights},
         {"threshold", threshold},
         {"bins", Reliability(answers)}}},

@@ -53,8 +53,7 @@ void RunPlaces(PlacesFlags flags) {
   if (flags.support) {
     calibration =
         wnn::Calibrate(places.route, learnt.Trials(pool, {.seed = flags.common.seed}, progress));
-    flags.sequence.floor = calibration.floor;
-    flags.sequence.trust = calibration.trust;
+    flags.sequence.votes = calibration.votes;
   }
   const auto sequence = wnn::MakeSequence(flags.sequence, places.route);
   const wnn::SearchOptions search{.tie_seed = flags.common.seed};

@@ -45,6 +45,8 @@ inline void AddWnnFlags(CLI::App& command, wnn::NetworkOptions& network) {
   command.add_option("--shift-y", network.shift_y, "and up and down");
   command.add_option("--shift-step", network.shift_step,
                      "pixels from one displacement to the next");
+  command.add_option("--closer-step", network.closer_step,
+                     "the same of the second, closer look at the best places; 0: none");
   command.add_flag("--blur,!--no-blur", network.blur, "Gaussian synapses read a blurred image");
   command.add_option("--neurons-x", network.neurons_x, "columns of neurons");
   command.add_option("--neurons-y", network.neurons_y, "rows of neurons");

@@ -117,6 +117,7 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
         trial.right.push_back(i);
         found = found || may;
       }
+      if (!nowhere && !one_lap) trial.exact = route.beside[e];
       if (set.size() == 0 || !found) return;
       wnn::SearchOptions search;
       search.allowed = &set;

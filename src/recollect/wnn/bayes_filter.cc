@@ -90,7 +90,7 @@ void BayesFilter::Correct(State& state, const std::vector<double>& likelihood) c
 }
 
 std::vector<double> BayesFilter::Update(const Observation& observation) {
-  Step step{Likelihood(options_, route_, observation), observation.moved};
+  Step step{Likelihood(options_.votes, route_, observation), observation.moved};
   if (options_.history > 0) {
     steps_.push_back(std::move(step));
     if (steps_.size() > static_cast<std::size_t>(options_.history)) steps_.pop_front();

@@ -12,7 +12,8 @@ namespace recollect::wnn {
 namespace {
 
 constexpr double kFloors[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05};
-constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 11, 16};
+constexpr double kSharpnesses[] = {0.25, 0.5, 1, 2, 3, 4, 6, 8};
 constexpr double kPrecisions[] = {0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995};
 constexpr double kSmallest = 1e-6;  // chances are kept this far from 0 and 1
 constexpr double kPrior = 0.1;      // pull of the weights towards (0, 1, 0), in trials
@@ -28,12 +29,9 @@ struct Features {
   Eigen::Vector3d x;
 };
 
-Features FeaturesOf(double floor, double trust, const Route& route,
+Features FeaturesOf(const VoteModel& model, const Route& route,
                     std::span<const LabelVotes> histogram, int neurons) {
-  SequenceOptions options;
-  options.floor = floor;
-  options.trust = trust;
-  std::vector<double> belief = Likelihood(options, route, {histogram, neurons, {}, {}});
+  std::vector<double> belief = Likelihood(model, route, {histogram, neurons, {}, {}});
   double sum = 0;
   for (const double one : belief) sum += one;
   for (double& one : belief) one /= sum;
@@ -53,21 +51,74 @@ bool IsRight(const Trial& trial, int place) {
   return std::find(trial.right.begin(), trial.right.end(), place) != trial.right.end();
 }
 
-// Mean log likelihood of the truth.
-double Fit(const Route& route, std::span<const Trial> trials, double floor, double trust) {
-  SequenceOptions options;
-  options.floor = floor;
-  options.trust = trust;
+// What fitting needs of a trial: places that any vote speaks for, and how many there are besides.
+struct Supporters {
+  struct Place {
+    double support = 0, own = 0;  // shares of the neurons
+    bool right = false;
+  };
+  std::vector<Place> places;
+  double others = 0, others_right = 0;
+};
+
+Supporters SupportersOf(const Route& route, const Trial& trial) {
+  const std::vector<double> support = Support(route, trial.histogram);
+  const double neurons = std::max(1, trial.neurons);
+  std::vector<double> own(support.size(), 0);
+  for (const LabelVotes& one : trial.histogram) {
+    own[static_cast<std::size_t>(one.label)] = one.votes / neurons;
+  }
+  const std::vector<int>& truth = trial.exact.empty() ? trial.right : trial.exact;
+  Supporters supporters;
+  for (int place = 0; place < route.places(); ++place) {
+    const auto i = static_cast<std::size_t>(place);
+    if (support[i] > 0) {
+      supporters.places.push_back({support[i] / neurons, own[i],
+                                   std::find(truth.begin(), truth.end(), place) != truth.end()});
+    }
+  }
+  supporters.others = static_cast<double>(support.size() - supporters.places.size());
+  supporters.others_right = static_cast<double>(truth.size());
+  for (const auto& place : supporters.places) supporters.others_right -= place.right ? 1 : 0;
+  return supporters;
+}
+
+// Sum of the log likelihoods of the truth; Likelihood, without the places that are all alike.
+double Fit(const std::vector<Supporters>& trials, const VoteModel& model) {
   double sum = 0;
-  for (const Trial& trial : trials) {
-    if (trial.right.empty()) continue;
-    const auto likelihood = Likelihood(options, route, {trial.histogram, trial.neurons, {}, {}});
-    double right = 0, all = 0;
-    for (const double one : likelihood) all += one;
-    for (const int place : trial.right) right += likelihood[static_cast<std::size_t>(place)];
+  for (const Supporters& trial : trials) {
+    const double other = std::pow(model.floor, model.trust + model.sharpness);
+    double right = other * trial.others_right, all = other * trial.others;
+    for (const Supporters::Place& place : trial.places) {
+      const double likelihood = std::exp(model.trust * std::log(place.support + model.floor) +
+                                         model.sharpness * std::log(place.own + model.floor));
+      all += likelihood;
+      if (place.right) right += likelihood;
+    }
     sum += std::log(std::max(right / all, kSmallest));
   }
   return sum;
+}
+
+VoteModel FitVotes(const Route& route, std::span<const Trial> trials) {
+  std::vector<Supporters> supporters;
+  for (const Trial& trial : trials) {
+    if (!trial.right.empty()) supporters.push_back(SupportersOf(route, trial));
+  }
+  VoteModel best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double floor : kFloors) {
+    for (const double trust : kTrusts) {
+      for (const double sharpness : kSharpnesses) {
+        const VoteModel model{floor, trust, sharpness};
+        const double fit = Fit(supporters, model);
+        if (fit <= most) continue;
+        most = fit;
+        best = model;
+      }
+    }
+  }
+  return best;
 }
 
 // Newton's method on the penalised log likelihood of a logistic model.
@@ -98,8 +149,7 @@ double Apply(const Calibration& calibration, const Eigen::Vector3d& x) {
 Judged Judge(const Calibration& calibration, const Route& route,
              std::span<const LabelVotes> histogram, int neurons) {
   if (histogram.empty()) return {};
-  const Features features =
-      FeaturesOf(calibration.floor, calibration.trust, route, histogram, neurons);
+  const Features features = FeaturesOf(calibration.votes, route, histogram, neurons);
   return {features.place, Apply(calibration, features.x)};
 }
 
@@ -108,22 +158,12 @@ Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
       std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return !t.right.empty(); }),
       "calibration", "no trial lies on the route");
   Calibration calibration;
-  double best = -std::numeric_limits<double>::infinity();
-  for (const double floor : kFloors) {
-    for (const double trust : kTrusts) {
-      const double fit = Fit(route, trials, floor, trust);
-      if (fit <= best) continue;
-      best = fit;
-      calibration.floor = floor;
-      calibration.trust = trust;
-    }
-  }
+  calibration.votes = FitVotes(route, trials);
   std::vector<Eigen::Vector3d> x;
   std::vector<bool> right;
   std::vector<Features> features;
   for (const Trial& trial : trials) {
-    features.push_back(
-        FeaturesOf(calibration.floor, calibration.trust, route, trial.histogram, trial.neurons));
+    features.push_back(FeaturesOf(calibration.votes, route, trial.histogram, trial.neurons));
     if (trial.right.empty()) continue;
     x.push_back(features.back().x);
     right.push_back(IsRight(trial, features.back().place));

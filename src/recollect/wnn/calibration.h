@@ -12,13 +12,14 @@ struct Trial {
   std::vector<LabelVotes> histogram;
   int neurons = 0;
   std::vector<int> right;  // places within one of the truth; empty: it lies nowhere on the route
+  std::vector<int> exact;  // of these the nearest ones, where it is known which
 };
 
 // What the committee's votes are worth.
 struct Calibration {
-  double floor = 0.02, trust = 2;  // of SequenceOptions
-  double weights[3] = {0, 1, 0};   // log odds of being right: 1, log odds of the belief, log of
-                                   // the support's share; see ProbabilityRight
+  VoteModel votes;
+  double weights[3] = {0, 1, 0};  // log odds of being right: 1, log odds of the belief, log of
+                                  // the support's share; see ProbabilityRight
   // Thresholds on ProbabilityRight, rising with `precision`.
   struct Threshold {
     double precision = 0, probability = 0;
@@ -34,10 +35,11 @@ struct Judged {
 Judged Judge(const Calibration& calibration, const Route& route,
              std::span<const LabelVotes> histogram, int neurons);
 
-// Fits floor and trust to the likelihood of the trials that lie on the route, the weights to
-// whether their answers are right (logistic regression), and the thresholds to both those trials
-// and those from nowhere: at each, so many of the answers kept are right, and at most the rest of
-// the images from nowhere are kept. Throws Error without a trial that lies on the route.
+// Fits the vote model to the likelihood of the (exact) truth of the trials that lie on the route,
+// the weights to whether their answers are right (logistic regression), and the thresholds to both
+// those trials and those from nowhere: at each, so many of the answers kept are right, and at most
+// the rest of the images from nowhere are kept. Throws Error without a trial that lies on the
+// route.
 Calibration Calibrate(const Route& route, std::span<const Trial> trials);
 
 // Threshold for a wanted precision in [0, 1): the first of the table that promises as much, 1 where

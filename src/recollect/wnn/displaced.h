@@ -10,7 +10,9 @@ namespace recollect::wnn {
 
 // What the committee recollects of a live image. Where the network has displacements, the image is
 // searched for under each of them, all against the one memory, and MergeDisplaced joins the
-// answers; search.stop is then not heeded. Otherwise this is Recollect of the image's pattern.
+// answers; search.stop is then not heeded. Where it also looks closer, the votes of
+// the second look (LookCloser) are added, of the labels with most votes and those numbered two
+// before to two after them. Otherwise this is Recollect of the image's pattern.
 // Throws Error where the image is not of the encoder's size.
 Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageView& image,
                             ThreadPool& pool, const SearchOptions& search = {});

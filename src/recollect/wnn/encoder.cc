@@ -148,6 +148,9 @@ Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 const Synapses& Encoder::synapses() const { return state_->synapses; }
 
 Displacements Encoder::displacements() const { return DisplacementsOf(state_->options); }
+Displacements Encoder::closer_displacements() const {
+  return CloserDisplacementsOf(state_->options);
+}
 
 std::size_t Encoder::pattern_words() const {
   return static_cast<std::size_t>(state_->synapses.neurons()) * kWords;
@@ -179,10 +182,10 @@ std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) 
   return pattern;
 }
 
-std::vector<std::vector<std::uint64_t>> Encoder::EncodeDisplaced(const ImageView& image) {
+std::vector<std::vector<std::uint64_t>> Encoder::EncodeDisplaced(const ImageView& image,
+                                                                 const Displacements& grid) {
   State& state = *state_;
   state.Check(image);
-  const Displacements grid = DisplacementsOf(state.options);
   const double unit = grid.step * image.width / 640.0;
   const auto pixels = [&](int steps) { return static_cast<int>(std::lround(steps * unit)); };
   if (state.invariant) {

@@ -35,6 +35,7 @@ class Encoder {
 
   const Synapses& synapses() const;
   Displacements displacements() const;
+  Displacements closer_displacements() const;
   // 64-bit words of one image's pattern: neurons x 2, the bits of synapses 0..63 first.
   std::size_t pattern_words() const;
 
@@ -44,8 +45,9 @@ class Encoder {
   void Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift = {});
   std::vector<std::uint64_t> Encode(const ImageView& image, Pixel shift = {});
 
-  // The image under all of the network's displacements, row by row (DisplacementsOf).
-  std::vector<std::vector<std::uint64_t>> EncodeDisplaced(const ImageView& image);
+  // The image under all displacements of a grid, row by row.
+  std::vector<std::vector<std::uint64_t>> EncodeDisplaced(const ImageView& image,
+                                                          const Displacements& grid);
 
  private:
   struct State;

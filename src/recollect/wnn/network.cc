@@ -30,6 +30,7 @@ void Check(const NetworkOptions& options, int width, int height) {
           "working_width and contrast_sigma must not be negative, gradient_arm positive, "
           "blur_scales 1 to 4");
   DisplacementsOf(options);
+  CloserDisplacementsOf(options);
   Require(width >= 8 && height >= 8 && width <= 1 << 14 && height <= 1 << 14, where,
           "images must be 8 to 16384 pixels a side");
 }
@@ -59,6 +60,7 @@ NetworkOptions RecollectNetwork() {
   options.working_width = 160;
   options.shift_x = 64;
   options.shift_y = 32;
+  options.closer_step = 4;
   return options;
 }
 
@@ -69,6 +71,16 @@ Displacements DisplacementsOf(const NetworkOptions& options) {
           "network", "shift_x and shift_y must be 0 to 16 times shift_step");
   return {2 * (options.shift_x / options.shift_step) + 1,
           2 * (options.shift_y / options.shift_step) + 1, options.shift_step};
+}
+
+Displacements CloserDisplacementsOf(const NetworkOptions& options) {
+  if (options.closer_step == 0) return {};
+  Require(options.closer_step > 0 && options.shift_step % options.closer_step == 0 &&
+              options.shift_step / options.closer_step <= 16,
+          "network", "closer_step must divide shift_step, by 16 at most");
+  const Displacements coarse = DisplacementsOf(options);
+  const int finer = options.shift_step / options.closer_step;
+  return {(coarse.columns - 1) * finer + 1, (coarse.rows - 1) * finer + 1, options.closer_step};
 }
 
 Synapses::Synapses(const NetworkOptions& options, int image_width, int image_height) {

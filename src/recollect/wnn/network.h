@@ -45,6 +45,9 @@ struct NetworkOptions {
   // shift_step; 0: only as it is.
   int shift_x = 0, shift_y = 0;
   int shift_step = 16;
+  // The best places are looked at again, under displacements of the same reach but one every so
+  // many pixels, a divisor of shift_step (closer_look.h); 0: they are not.
+  int closer_step = 0;
 
   int neurons() const { return neurons_x * neurons_y; }
 };
@@ -61,6 +64,8 @@ struct Displacements {
   int count() const { return columns * rows; }
 };
 Displacements DisplacementsOf(const NetworkOptions& options);
+// Those of the second look; {0, 0} alone where there is none.
+Displacements CloserDisplacementsOf(const NetworkOptions& options);
 
 // A pixel of the window.
 struct Pixel {

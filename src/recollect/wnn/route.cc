@@ -60,9 +60,9 @@ int Supported(const Route& route, std::span<const LabelVotes> histogram) {
   const std::vector<double> support = Support(route, histogram);
   auto best = static_cast<int>(std::max_element(support.begin(), support.end()) - support.begin());
   const int place = best;
-  for (const int other : route.beside[static_cast<std::size_t>(place)]) {
-    if (votes[static_cast<std::size_t>(other)] > votes[static_cast<std::size_t>(best)])
-      best = other;
+  for (const LabelVotes& one : histogram) {
+    if (!route.WithinOne(place, one.label)) continue;
+    if (one.votes > votes[static_cast<std::size_t>(best)]) best = one.label;
   }
   return best;
 }

@@ -26,7 +26,7 @@ Route ChainRoute(int places);
 // ahead and one behind. Laps that show one place share its votes; this joins them again.
 std::vector<double> Support(const Route& route, std::span<const LabelVotes> histogram);
 
-// The place with most support; of those beside it and itself the one with most votes. -1 for an
+// The place with most votes among that with most support and those within one of it. -1 for an
 // empty histogram.
 int Supported(const Route& route, std::span<const LabelVotes> histogram);
 

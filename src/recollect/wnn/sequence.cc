@@ -16,7 +16,7 @@ class SingleImage final : public Sequence {
   SingleImage(const SequenceOptions& options, const Route& route)
       : options_(options), route_(route) {}
   std::vector<double> Update(const Observation& observation) override {
-    std::vector<double> belief = Likelihood(options_, route_, observation);
+    std::vector<double> belief = Likelihood(options_.votes, route_, observation);
     Normalise(belief);
     return belief;
   }
@@ -34,14 +34,15 @@ void Normalise(std::vector<double>& weights) {
   for (double& weight : weights) weight /= sum;
 }
 
-std::vector<double> Likelihood(const SequenceOptions& options, const Route& route,
+std::vector<double> Likelihood(const VoteModel& model, const Route& route,
                                const Observation& observation) {
   std::vector<double> support = Support(route, observation.histogram);
   const double neurons = std::max(1, observation.neurons);
-  for (double& s : support) s = std::pow(s / neurons + options.floor, options.trust);
-  // Of the key frames of one place, which have the same support, the one that was voted for.
+  const double unvoted = std::pow(model.floor, model.sharpness);
+  for (double& s : support) s = std::pow(s / neurons + model.floor, model.trust) * unvoted;
   for (const LabelVotes& one : observation.histogram) {
-    support[static_cast<std::size_t>(one.label)] *= 1 + one.votes / neurons;
+    support[static_cast<std::size_t>(one.label)] *=
+        std::pow(one.votes / neurons + model.floor, model.sharpness) / unvoted;
   }
   return support;
 }
@@ -50,7 +51,8 @@ std::unique_ptr<Sequence> MakeSequence(const SequenceOptions& options, const Rou
   const std::string where = "sequence";
   Require(route.places() > 0, where, "a route without places");
   Require(options.history >= 0 && options.history <= 1000, where, "history must be 0 to 1000");
-  Require(options.floor > 0 && options.trust > 0, where, "floor and trust must be positive");
+  Require(options.votes.floor > 0 && options.votes.trust > 0 && options.votes.sharpness >= 0, where,
+          "floor and trust must be positive, sharpness not negative");
   Require(options.jump > 0 && options.jump < 1 && options.change_lap >= 0 && options.change_lap < 1,
           where, "chances must lie between 0 and 1");
   switch (options.filter) {

@@ -30,12 +30,16 @@ enum class Filter {
   kBayes,  // discrete Bayes filter over places and speeds
 };
 
+// Likelihood of a place: (its support / neurons + floor) ^ trust (its votes / neurons + floor) ^
+// sharpness. Fit on laps by Calibrate.
+struct VoteModel {
+  double floor = 0.02, trust = 2, sharpness = 0.25;
+};
+
 struct SequenceOptions {
   Filter filter = Filter::kBayes;
   int history = 10;  // images that count, the present one among them; 0 (kBayes only): all
-  // Likelihood of a place: (its support / neurons + floor) ^ trust. Fit on laps by Calibrate.
-  double floor = 0.02;
-  double trust = 2;
+  VoteModel votes = {};
   double jump = 1e-3;       // chance to be anywhere at all at the next image
   double change_lap = 0.1;  // chance to follow, from here on, another lap through this place
   bool backwards = false;   // whether one may go against the direction of the laps
@@ -63,7 +67,7 @@ struct PlaceBelief {
 PlaceBelief MostLikely(const Route& route, std::span<const double> belief);
 
 // The likelihood of every place given one image, up to a factor.
-std::vector<double> Likelihood(const SequenceOptions& options, const Route& route,
+std::vector<double> Likelihood(const VoteModel& model, const Route& route,
                                const Observation& observation);
 
 // Mean Hamming distance over neurons of a pattern to every entry.

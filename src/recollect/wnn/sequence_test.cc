@@ -170,14 +170,14 @@ TEST(Calibration, ProbabilitiesAreThoseOfNewImages) {
     std::vector<Trial> trials;
     for (int i = 0; i < count; ++i) {
       const auto truth = static_cast<int>(random.Index(kPlaces));
-      Trial trial{Votes(truth, random), kNeurons, {}};
+      Trial trial{Votes(truth, random), kNeurons, {}, {}};
       for (int p = 0; p < kPlaces; ++p) {
         if (route.WithinOne(truth, p)) trial.right.push_back(p);
       }
       trials.push_back(trial);
       std::vector<LabelVotes> flat;  // from nowhere: all alike
       for (int p = 0; p < kPlaces; ++p) flat.push_back({p, 1 + static_cast<int>(random.Index(4))});
-      trials.push_back({flat, kNeurons, {}});
+      trials.push_back({flat, kNeurons, {}, {}});
     }
     return trials;
   };

@@ -1,0 +1,123 @@
+#include "recollect/wnn/closer_look.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/wnn/displaced.h"
+#include "recollect/wnn/test_scene.h"
+
+namespace recollect::wnn {
+namespace {
+
+// The scene zoomed about its centre, then moved right and down by so many pixels.
+cv::Mat Moved(const cv::Mat& scene, double zoom, double x, double y) {
+  const cv::Mat motion = (cv::Mat_<double>(2, 3) << zoom, 0, (1 - zoom) * scene.cols / 2 + x, 0,
+                          zoom, (1 - zoom) * scene.rows / 2 + y);
+  cv::Mat moved;
+  cv::warpAffine(scene, moved, motion, scene.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return moved;
+}
+
+struct Scenes {
+  explicit Scenes(int count, int threads = 2) : pool(threads) {
+    for (int i = 0; i < count; ++i) {
+      memory.Append(encoder.Encode(View(Scene(static_cast<std::uint64_t>(i)))));
+    }
+  }
+  std::vector<Look> LookAt(const cv::Mat& live) {
+    const Displacements grid = encoder.closer_displacements();
+    const auto patterns = encoder.EncodeDisplaced(View(live), grid);
+    std::vector<int> all(static_cast<std::size_t>(memory.entries()));
+    std::iota(all.begin(), all.end(), 0);
+    const auto near = NearDistances(memory, {patterns, grid}, 4, all, pool);
+    return LookCloser(memory, {patterns, grid}, near, all, pool);
+  }
+  ThreadPool pool;
+  NetworkOptions options = RecollectNetwork();
+  Encoder encoder{options, 320, 240, pool};
+  Memory memory{options.neurons()};
+};
+
+TEST(CloserLook, FindsTheDisplacementBetweenCoarseSteps) {
+  Scenes scenes(12);
+  const Displacements grid = scenes.encoder.closer_displacements();
+  ASSERT_EQ(grid.columns, 33);
+  ASSERT_EQ(grid.rows, 17);
+  // 4 pixels of 320 right, 2 up: two steps of 4 pixels of 640 right, one up.
+  const auto looks = scenes.LookAt(Moved(Scene(5), 1, 4, -2));
+  for (int i = 0; i < 12; ++i) {
+    if (i != 5) {
+      EXPECT_LT(looks[static_cast<std::size_t>(i)].votes, looks[5].votes / 3) << i;
+    }
+  }
+  EXPECT_GT(looks[5].votes, scenes.options.neurons() / 2);
+  // Half a coarse step; of equal votes the first displacement is told.
+  EXPECT_NEAR(looks[5].displacement % 33, 16 + 2, 2);
+  EXPECT_NEAR(looks[5].displacement / 33, 8 - 1, 2);
+}
+
+TEST(CloserLook, TellsViewsOfOneSceneApart) {
+  // A road of views: each entry is nearer to the scene by eight parts in a hundred than the one
+  // before. Live ones are the same, darker and moved by
+  // half a coarse step (12 pixels of 320).
+  NetworkOptions options = RecollectNetwork();
+  const auto right = [&](int closer_step) {
+    options.closer_step = closer_step;
+    ThreadPool pool(2);
+    Encoder encoder(options, 320, 240, pool);
+    Memory memory(options.neurons());
+    constexpr int kScenes = 4, kViews = 6;
+    const auto view = [](int scene, int i) {
+      return Moved(Scene(static_cast<std::uint64_t>(scene)), 1 + 0.08 * i, 0, 0);
+    };
+    for (int scene = 0; scene < kScenes; ++scene) {
+      for (int i = 0; i < kViews; ++i) memory.Append(encoder.Encode(View(view(scene, i))));
+    }
+    int right = 0;
+    for (int scene = 0; scene < kScenes; ++scene) {
+      for (int i = 0; i < kViews; ++i) {
+        const cv::Mat live = 0.6 * Moved(view(scene, i), 1, 12, -4);
+        right += RecollectImage(memory, encoder, View(live), pool).winner == scene * kViews + i;
+      }
+    }
+    return right;
+  };
+  const int coarse = right(0), closer = right(4);
+  EXPECT_GE(closer, 17);
+  EXPECT_GT(closer, coarse);
+}
+
+TEST(CloserLook, IsTheSameWithAnyNumberOfThreads) {
+  Scenes one(8, 1), three(8, 3);
+  const cv::Mat live = Moved(Scene(3), 1.05, 7, 3);
+  const auto a = one.LookAt(live), b = three.LookAt(live);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].votes, b[i].votes);
+    EXPECT_EQ(a[i].displacement, b[i].displacement);
+  }
+}
+
+TEST(CloserLook, LooksOnlyWhereTheSearchMay) {
+  Scenes scenes(12);
+  EntrySet allowed(scenes.memory);
+  allowed.AllowRange(0, 5).AllowRange(6, 12);
+  const Recollection found =
+      RecollectImage(scenes.memory, scenes.encoder, View(Moved(Scene(5), 1, 4, -2)), scenes.pool,
+                     {.allowed = &allowed});
+  EXPECT_NE(found.winner, 5);
+  for (const LabelVotes& one : found.histogram) EXPECT_NE(one.label, 5);
+}
+
+TEST(CloserLook, AStepThatDoesNotDivideIsRefused) {
+  NetworkOptions options = RecollectNetwork();
+  options.closer_step = 5;
+  EXPECT_THROW(CloserDisplacementsOf(options), Error);
+  options.closer_step = -4;
+  EXPECT_THROW(CloserDisplacementsOf(options), Error);
+}
+
+}  // namespace
+}  // namespace recollect::wnn
