@@ -77,7 +77,8 @@ void RunPlaces(PlacesFlags flags) {
       distances = wnn::MeanDistances(learnt.memory, encoder.Encode(view), pool);
     }
     wnn::PlaceBelief answer = wnn::MostLikely(
-        places.route, sequence->Update({one.histogram, one.neurons_read, distances, {}}));
+        places.route, sequence->Update({one.histogram, one.neurons_read, distances, {}}),
+        one.histogram);
     if (flags.sequence.filter == wnn::Filter::kNone) {
       const wnn::Judged judged =
           wnn::Judge(calibration, places.route, one.histogram, one.neurons_read);

@@ -115,7 +115,8 @@ std::vector<PlaceAnswer> AnswerLive(LearntPlaces& learnt, const Lap& live, doubl
       distances = wnn::MeanDistances(learnt.memory, learnt.encoder.Encode(View(image)), pool);
     }
     const wnn::PlaceBelief filtered = wnn::MostLikely(
-        places.route, belief->Update({one.histogram, one.neurons_read, distances, {}}));
+        places.route, belief->Update({one.histogram, one.neurons_read, distances, {}}),
+        one.histogram);
     const wnn::Judged judged =
         wnn::Judge(calibration, places.route, one.histogram, one.neurons_read);
     const int nearest = NearestFrame(places.frames, truth);

@@ -16,6 +16,7 @@ constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 11, 16};
 constexpr double kSharpnesses[] = {0.25, 0.5, 1, 2, 3, 4, 6, 8};
 constexpr double kPrecisions[] = {0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995};
 constexpr double kSmallest = 1e-6;  // chances are kept this far from 0 and 1
+constexpr double kNowhere = 0.1;    // what an image from nowhere counts beside one from the route
 constexpr double kPrior = 0.1;      // pull of the weights towards (0, 1, 0), in trials
 
 double Sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
@@ -121,17 +122,24 @@ VoteModel FitVotes(const Route& route, std::span<const Trial> trials) {
   return best;
 }
 
+// A live image's features, whether its answer was right, and what it counts.
+struct Example {
+  Eigen::Vector3d x;
+  bool right = false;
+  double weight = 1;
+};
+
 // Newton's method on the penalised log likelihood of a logistic model.
-Eigen::Vector3d Logistic(const std::vector<Eigen::Vector3d>& x, const std::vector<bool>& right) {
+Eigen::Vector3d Logistic(const std::vector<Example>& examples) {
   const Eigen::Vector3d prior(0, 1, 0);
   Eigen::Vector3d w = prior;
   for (int step = 0; step < 50; ++step) {
     Eigen::Vector3d gradient = kPrior * (w - prior);
     Eigen::Matrix3d hessian = kPrior * Eigen::Matrix3d::Identity();
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double p = Sigmoid(w.dot(x[i]));
-      gradient += (p - (right[i] ? 1 : 0)) * x[i];
-      hessian += std::max(p * (1 - p), kSmallest) * x[i] * x[i].transpose();
+    for (const auto& [x, right, weight] : examples) {
+      const double p = Sigmoid(w.dot(x));
+      gradient += weight * (p - (right ? 1 : 0)) * x;
+      hessian += weight * std::max(p * (1 - p), kSmallest) * x * x.transpose();
     }
     const Eigen::Vector3d change = hessian.ldlt().solve(gradient);
     w -= change * std::min(1.0, 2 / (change.norm() + kSmallest));
@@ -159,16 +167,14 @@ Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
       "calibration", "no trial lies on the route");
   Calibration calibration;
   calibration.votes = FitVotes(route, trials);
-  std::vector<Eigen::Vector3d> x;
-  std::vector<bool> right;
+  std::vector<Example> examples;
   std::vector<Features> features;
   for (const Trial& trial : trials) {
     features.push_back(FeaturesOf(calibration.votes, route, trial.histogram, trial.neurons));
-    if (trial.right.empty()) continue;
-    x.push_back(features.back().x);
-    right.push_back(IsRight(trial, features.back().place));
+    examples.push_back({features.back().x, IsRight(trial, features.back().place),
+                        trial.right.empty() ? kNowhere : 1});
   }
-  Eigen::Map<Eigen::Vector3d>(calibration.weights) = Logistic(x, right);
+  Eigen::Map<Eigen::Vector3d>(calibration.weights) = Logistic(examples);
 
   std::vector<double> found, nowhere;  // probabilities of either kind of trial
   std::vector<std::pair<double, bool>> judged;

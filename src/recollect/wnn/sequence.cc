@@ -67,7 +67,8 @@ std::unique_ptr<Sequence> MakeSequence(const SequenceOptions& options, const Rou
   return std::make_unique<BayesFilter>(options, route);
 }
 
-PlaceBelief MostLikely(const Route& route, std::span<const double> belief) {
+PlaceBelief MostLikely(const Route& route, std::span<const double> belief,
+                       std::span<const LabelVotes> histogram) {
   Require(static_cast<int>(belief.size()) == route.places(), "belief", "is of another route");
   PlaceBelief best;
   for (int place = 0; place < route.places(); ++place) {
@@ -86,6 +87,13 @@ PlaceBelief MostLikely(const Route& route, std::span<const double> belief) {
     add(place);
     for (const int other : route.beside[i]) add(other);
     if (sum > best.probability) best = {likeliest, std::min(1.0, sum)};
+  }
+  int votes = 0;
+  const int likeliest = best.place;
+  for (const LabelVotes& one : histogram) {
+    if (one.votes <= votes || !route.WithinOne(likeliest, one.label)) continue;
+    votes = one.votes;
+    best.place = one.label;
   }
   return best;
 }

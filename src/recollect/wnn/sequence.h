@@ -58,13 +58,14 @@ class Sequence {
 // `route` is copied. Throws Error on options out of range.
 std::unique_ptr<Sequence> MakeSequence(const SequenceOptions& options, const Route& route);
 
-// The place that a belief stands for: the likeliest of those within one of each other (see Route)
-// that hold most of it.
+// The place that a belief stands for: of those within one of each other (see Route) that hold most
+// of it, the one with most votes of the present image; the likeliest where they have none.
 struct PlaceBelief {
   int place = -1;
   double probability = 0;  // of these, says the belief
 };
-PlaceBelief MostLikely(const Route& route, std::span<const double> belief);
+PlaceBelief MostLikely(const Route& route, std::span<const double> belief,
+                       std::span<const LabelVotes> histogram = {});
 
 // The likelihood of every place given one image, up to a factor.
 std::vector<double> Likelihood(const VoteModel& model, const Route& route,
