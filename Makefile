@@ -8,8 +8,10 @@ WEB_PACKAGES := $(shell command -v npm >/dev/null || echo nodejs npm)
 TEST_PACKAGES := $(shell command -v chromium >/dev/null || echo chromium)
 RECOLLECT = build/recollect
 
-# make demo DATA=folder: the laps to show (docs/data.md); without, it renders some.
+# make demo DATA=folder: the laps to show (docs/data.md); without, it renders some, and tunes a
+# network that has learnt on another simulated route (docs/relative-pose.md).
 DATA =
+PRETRAINED = models/campus-compact.rcm
 
 .PHONY: setup setup-program setup-web setup-test configure build test sanitize demo format
 
@@ -45,7 +47,7 @@ test: setup-test build
 # Maps all laps but the last, trains on them, localises the last, draws the picture.
 demo: configure
 	@cmake --build build --target recollect
-	@$(RECOLLECT) demo $(if $(DATA),--data $(DATA))
+	@$(RECOLLECT) demo $(if $(DATA),--data $(DATA),--start $(PRETRAINED))
 
 # The unit tests again under the address and undefined-behaviour sanitizers.
 sanitize: setup-program
