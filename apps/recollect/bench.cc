@@ -102,6 +102,11 @@ void AddBench(CLI::App& app) {
   search->add_option("--row-limit", options.row_limit, "of Fat-Fast: entries a row; 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  search
+      ->add_option("--medoids", options.medoids,
+                   "measure a memory compressed to so many patterns a neuron, too; 0: not")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   search->add_flag("--fatfast,!--no-fatfast", options.fat_fast, "measure Fat-Fast VG-RAM, too");
   search->add_flag("--plain,!--no-plain", options.plain, "measure the plain kernel, too");
   search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");

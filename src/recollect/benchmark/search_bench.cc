@@ -14,6 +14,7 @@
 #include "recollect/core/parallel.h"
 #include "recollect/core/stopwatch.h"
 #include "recollect/map/store.h"
+#include "recollect/wnn/compressed.h"
 #include "recollect/wnn/encoder.h"
 #include "recollect/wnn/fat_fast.h"
 #include "recollect/wnn/kernel.h"
@@ -223,24 +224,45 @@ json RunSearchBench(const SearchBenchOptions& options, const ProgressSink& progr
       faiss->NearestDistances({&one, 1}, pool);
     });
   }
+  // How often a search that need not be exact names the exact one's winner, and its neurons theirs.
+  struct Agreement {
+    double winners = 0, neurons = 0;
+  };
+  const auto agreement_of = [&](const auto& ask) {
+    Agreement agreement;
+    const int count = std::min(200, static_cast<int>(corpus.live.size()));
+    for (int i = 0; i < count; ++i) {
+      const wnn::Recollection a = ask(i);
+      const auto b = wnn::Recollect(memory, live(i), pool, {.tie_seed = seed});
+      agreement.winners += a.winner == b.winner ? 1.0 / count : 0;
+      int same = 0;
+      for (std::size_t n = 0; n < a.answers.size(); ++n) {
+        same += wnn::AnswerEntry(a.answers[n]) == wnn::AnswerEntry(b.answers[n]);
+      }
+      agreement.neurons += static_cast<double>(same) / memory.neurons() / count;
+    }
+    return agreement;
+  };
   std::unique_ptr<wnn::FatFast> fat_fast;
   if (options.fat_fast) {
     fat_fast = std::make_unique<wnn::FatFast>(memory, pool,
                                               wnn::FatFastOptions{.row_limit = options.row_limit});
     figures["fatfast_bytes"] = fat_fast->bytes();
     race.Add("fatfast_ms", 1, [&](int i) { fat_fast->Recollect(live(i), pool, seed); });
-    int same = 0;
-    double neurons_same = 0;
-    const int count = std::min(200, static_cast<int>(corpus.live.size()));
-    for (int i = 0; i < count; ++i) {
-      const auto a = fat_fast->Recollect(live(i), pool, seed);
-      const auto b = wnn::Recollect(memory, live(i), pool, {.tie_seed = seed});
-      same += a.winner == b.winner;
-      for (std::size_t n = 0; n < a.answers.size(); ++n)
-        neurons_same += a.answers[n] == b.answers[n];
-    }
-    figures["agreement"] = static_cast<double>(same) / count;
-    figures["neuron_agreement"] = neurons_same / count / memory.neurons();
+    const Agreement agreement =
+        agreement_of([&](int i) { return fat_fast->Recollect(live(i), pool, seed); });
+    figures["agreement"] = agreement.winners;
+    figures["neuron_agreement"] = agreement.neurons;
+  }
+  std::unique_ptr<wnn::CompressedMemory> medoids;
+  if (options.medoids > 0) {
+    medoids = std::make_unique<wnn::CompressedMemory>(
+        memory, pool, wnn::CompressionOptions{.medoids = options.medoids, .seed = seed}, progress);
+    const auto ask = [&](int i) { return medoids->Recollect(live(i), pool, {.tie_seed = seed}); };
+    race.Add("medoids_ms", 1, ask);
+    const Agreement agreement = agreement_of(ask);
+    figures["medoids_agreement"] = agreement.winners;
+    figures["medoids_neuron_agreement"] = agreement.neurons;
   }
   figures.update(race.Run(options.rounds, progress));
   figures["open_ms"] = OpenMilliseconds(memory);
@@ -257,8 +279,9 @@ std::string DescribeSearchBench(const json& figures) {
       figures.at("neurons").get<int>(), figures.at("bytes").get<double>() / 1e6,
       figures.at("patterns").get<std::string>(), figures.at("kernel").get<std::string>());
   text += fmt::format("{:<14}{:>10}{:>10}\n", "", "ms", "x read");
-  for (const char* name : {"read", "plain", "exact", "exact_batch8", "certified", "anytime",
-                           "restricted", "fatfast", "faiss", "sharded", "encode", "open"}) {
+  for (const char* name :
+       {"read", "plain", "exact", "exact_batch8", "certified", "anytime", "restricted", "fatfast",
+        "medoids", "faiss", "sharded", "encode", "open"}) {
     const std::string key = std::string(name) + "_ms";
     if (!figures.contains(key)) continue;
     const double ms = figures.at(key);
@@ -273,6 +296,10 @@ std::string DescribeSearchBench(const json& figures) {
   if (figures.contains("agreement")) {
     text += fmt::format("fatfast: agrees with exact on {:.1f} % of images\n",
                         100 * figures.at("agreement").get<double>());
+  }
+  if (figures.contains("medoids_agreement")) {
+    text += fmt::format("medoids: agree with exact on {:.1f} % of images\n",
+                        100 * figures.at("medoids_agreement").get<double>());
   }
   if (figures.contains("sharded_identical")) {
     text +=

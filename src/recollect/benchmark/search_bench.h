@@ -21,6 +21,7 @@ struct SearchBenchOptions {
   bool faiss = true;
   bool plain = true;  // takes long with many key frames
   int row_limit = 0;  // of Fat-Fast
+  int medoids = 0;    // that a neuron keeps in a compressed memory; 0: none is measured
   int threads = 0;
 };
 
@@ -28,7 +29,7 @@ struct SearchBenchOptions {
 //   read_ms          streaming the patterns' bytes from memory: the wall
 //   exact_ms, exact_batch8_ms (a query of a batch of 8), certified_ms, anytime_ms, encode_ms,
 //   restricted_ms (a twentieth of the map), open_ms
-//   plain_ms (the plain kernel), fatfast_ms, faiss_ms, sharded_ms where asked for
+//   plain_ms (the plain kernel), fatfast_ms, medoids_ms, faiss_ms, sharded_ms where asked for
 // and, by kind, shares of neurons read, of memory read, and of disagreement with the full search.
 nlohmann::json RunSearchBench(const SearchBenchOptions& options, const ProgressSink& progress = {});
 

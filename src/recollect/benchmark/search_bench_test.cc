@@ -23,9 +23,11 @@ SearchBenchOptions Small() {
 TEST(SearchBench, WritesEveryFigure) {
   SearchBenchOptions options = Small();
   options.ranks = 2;
+  options.medoids = 20;
   const nlohmann::json figures = RunSearchBench(options);
-  for (const char* key : {"read_ms", "plain_ms", "exact_ms", "exact_batch8_ms", "certified_ms",
-                          "anytime_ms", "fatfast_ms", "encode_ms", "open_ms", "agreement"}) {
+  for (const char* key :
+       {"read_ms", "plain_ms", "exact_ms", "exact_batch8_ms", "certified_ms", "anytime_ms",
+        "fatfast_ms", "medoids_ms", "medoids_agreement", "encode_ms", "open_ms", "agreement"}) {
     EXPECT_TRUE(figures.contains(key)) << key;
   }
   EXPECT_EQ(figures.contains("faiss_ms"), FaissRival::Available());

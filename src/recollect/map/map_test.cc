@@ -242,6 +242,7 @@ TEST_F(MapTest, TellsForeignAndDamagedFiles) {
   EXPECT_NE(message(folder_ / "empty.map").find("is empty"), std::string::npos);
   AtomicWrite(folder_ / "text.map", std::string(100000, 'x'));
   EXPECT_NE(message(folder_ / "text.map").find("not a whole Recollect map"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "text.map-lock"));
   const std::string whole = ReadFile(file);
   AtomicWrite(folder_ / "short.map", whole.substr(0, whole.size() / 2));
   EXPECT_NE(message(folder_ / "short.map").find("cut short"), std::string::npos);

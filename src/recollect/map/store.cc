@@ -52,10 +52,15 @@ struct Session {
 
   Session(const fs::path& opened, const fs::path& shown, bool writing, bool create)
       : path(opened), file(shown) {
+    const fs::path lock = opened.string() + "-lock";
+    const bool had_lock = fs::exists(lock);
     try {
       Open(writing, create);
     } catch (...) {
       Close();
+      // What is no map of ours is left as it was.
+      std::error_code ignored;
+      if (!had_lock) fs::remove(lock, ignored);
       throw;
     }
   }
