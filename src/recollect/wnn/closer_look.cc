@@ -1,7 +1,6 @@
 #include "recollect/wnn/closer_look.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <mutex>
 
@@ -12,20 +11,41 @@ namespace {
 
 constexpr int kGrain = 16;  // neurons that a thread takes at a time
 
+// Compiled for machines that count bits in vectors, in words, and not at all.
+#define RECOLLECT_COUNTING \
+  __attribute__((target_clones("arch=icelake-server", "popcnt", "default")))
+
+inline __attribute__((always_inline)) std::uint64_t DistanceOf(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::uint64_t>(__builtin_popcountll(a) + __builtin_popcountll(b));
+}
+
 // near[d]: whether low[d], high[d] lie within `limit` of the entry's two words. Returns whether any
 // does.
-__attribute__((target_clones("arch=icelake-server", "popcnt", "default"))) bool FindNear(
-    const std::uint64_t* low, const std::uint64_t* high, std::size_t count,
-    const std::uint64_t* entry, std::uint64_t limit, std::uint8_t* near) {
+RECOLLECT_COUNTING bool FindNear(const std::uint64_t* low, const std::uint64_t* high,
+                                 std::size_t count, const std::uint64_t* entry, std::uint64_t limit,
+                                 std::uint8_t* near) {
   std::uint64_t any = 0;
   for (std::size_t d = 0; d < count; ++d) {
-    const auto distance = static_cast<std::uint64_t>(__builtin_popcountll(low[d] ^ entry[0])) +
-                          static_cast<std::uint64_t>(__builtin_popcountll(high[d] ^ entry[1]));
+    const std::uint64_t distance = DistanceOf(low[d] ^ entry[0], high[d] ^ entry[1]);
     const std::uint64_t is_near = distance <= limit ? 1 : 0;
     near[d] = static_cast<std::uint8_t>(is_near);
     any |= is_near;
   }
   return any != 0;
+}
+
+// Adds the distances of all low[d], high[d] to an entry's two words, and their squares.
+RECOLLECT_COUNTING void AddDistances(const std::uint64_t* low, const std::uint64_t* high,
+                                     std::size_t count, const std::uint64_t* entry,
+                                     std::uint64_t& sum, std::uint64_t& squares) {
+  std::uint64_t own = 0, own_squares = 0;
+  for (std::size_t d = 0; d < count; ++d) {
+    const std::uint64_t distance = DistanceOf(low[d] ^ entry[0], high[d] ^ entry[1]);
+    own += distance;
+    own_squares += distance * distance;
+  }
+  sum += own;
+  squares += own_squares;
 }
 
 // votes[d] += whether any displacement at most one step from d is near.
@@ -60,11 +80,6 @@ std::vector<std::vector<std::uint64_t>> PatternsOf(const Memory& memory,
   return patterns;
 }
 
-int Distance(const std::vector<std::uint64_t>& a, std::span<const std::uint64_t> b, std::size_t n) {
-  return std::popcount(a[kWords * n] ^ b[kWords * n]) +
-         std::popcount(a[kWords * n + 1] ^ b[kWords * n + 1]);
-}
-
 }  // namespace
 
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
@@ -74,16 +89,18 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
   std::vector<int> near(static_cast<std::size_t>(memory.neurons()), -1);
   if (entries.empty()) return near;
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::uint64_t> low(patterns.size()), high(patterns.size());
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      std::int64_t sum = 0, squares = 0, count = 0;
-      for (std::size_t d = 0; d < patterns.size(); d += stride) {
-        for (const auto& entry : entries) {
-          const int distance = Distance(entry, patterns[d], n);
-          sum += distance;
-          squares += distance * distance;
-          ++count;
-        }
+      std::size_t seen = 0;
+      for (std::size_t d = 0; d < patterns.size(); d += stride, ++seen) {
+        low[seen] = patterns[d][kWords * n];
+        high[seen] = patterns[d][kWords * n + 1];
       }
+      std::uint64_t sum = 0, squares = 0;
+      for (const auto& entry : entries) {
+        AddDistances(low.data(), high.data(), seen, &entry[kWords * n], sum, squares);
+      }
+      const std::size_t count = seen * entries.size();
       const double mean = static_cast<double>(sum) / static_cast<double>(count);
       const double variance =
           static_cast<double>(squares) / static_cast<double>(count) - mean * mean;

@@ -191,15 +191,21 @@ std::vector<std::vector<std::uint64_t>> Encoder::EncodeDisplaced(const ImageView
   if (state.invariant) {
     state.invariant->Look(State::Whole(image), {pixels(grid.columns / 2), pixels(grid.rows / 2)});
   }
-  std::vector<std::vector<std::uint64_t>> patterns;
-  for (int i = 0; i < grid.count(); ++i) {
-    const Pixel shift{pixels(i % grid.columns - grid.columns / 2),
-                      pixels(i / grid.columns - grid.rows / 2)};
-    patterns.emplace_back(pattern_words());
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  std::vector<std::vector<std::uint64_t>> patterns(columns * static_cast<std::size_t>(grid.rows),
+                                                   std::vector<std::uint64_t>(pattern_words()));
+  std::vector<Pixel> shifts(columns);
+  for (int y = 0; y < grid.rows; ++y) {
+    const std::span row =
+        std::span(patterns).subspan(static_cast<std::size_t>(y) * columns, columns);
+    for (int x = 0; x < grid.columns; ++x) {
+      shifts[static_cast<std::size_t>(x)] = {pixels(x - grid.columns / 2),
+                                             pixels(y - grid.rows / 2)};
+    }
     if (state.invariant) {
-      state.invariant->Encode(shift, patterns.back());
+      state.invariant->EncodeRow(shifts, row);
     } else {
-      Encode(image, patterns.back(), shift);
+      for (std::size_t x = 0; x < columns; ++x) Encode(image, row[x], shifts[x]);
     }
   }
   return patterns;

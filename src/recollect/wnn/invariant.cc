@@ -65,6 +65,28 @@ void Gather(const std::uint8_t* bits, const std::int32_t* at, std::uint64_t* wor
   }
 }
 
+// The bits of one neuron under shifts by 0, 1, 2 ... places: all first words, then all second ones.
+// Shifts are lanes here: eight synapses at a time fill a byte of each.
+void GatherRow(const std::uint8_t* bits, const std::int32_t* at, std::span<std::uint64_t> words) {
+  constexpr std::size_t kLanes = 64;
+  const std::size_t shifts = words.size() / kWords;
+  std::fill(words.begin(), words.end(), 0);
+  for (std::size_t begin = 0; begin < shifts; begin += kLanes) {
+    const std::size_t lanes = std::min(kLanes, shifts - begin);
+    for (std::size_t byte = 0; byte < kSynapses / 8; ++byte) {
+      std::array<std::uint8_t, kLanes> filled{};
+      for (std::size_t i = 0; i < 8; ++i) {
+        const std::uint8_t* from = bits + at[8 * byte + i] + begin;
+        for (std::size_t x = 0; x < lanes; ++x) {
+          filled[x] = static_cast<std::uint8_t>(filled[x] | from[x] << i);
+        }
+      }
+      std::uint64_t* to = &words[byte / 8 * shifts + begin];
+      for (std::size_t x = 0; x < lanes; ++x) to[x] |= std::uint64_t{filled[x]} << byte % 8 * 8;
+    }
+  }
+}
+
 void Rank(const std::int32_t* values, const std::int32_t* at, std::uint64_t* words) {
   std::array<std::int32_t, kSynapses> sorted;
   for (std::size_t i = 0; i < kSynapses; ++i) sorted[i] = values[at[i]];
@@ -174,11 +196,41 @@ void InvariantEncoder::Look(const cv::Mat& image, Pixel reach) {
   }
 }
 
-void InvariantEncoder::Encode(Pixel shift, std::span<std::uint64_t> pattern) const {
+std::ptrdiff_t InvariantEncoder::Moved(Pixel shift) const {
   const Pixel by = Working(shift);
   Require(std::abs(by.x) <= margin_.x && std::abs(by.y) <= margin_.y, "displacement",
           "is beyond what the image was prepared for");
-  const std::ptrdiff_t moved = std::ptrdiff_t{by.y} * (width_ + 2 * margin_.x) + by.x;
+  return std::ptrdiff_t{by.y} * (width_ + 2 * margin_.x) + by.x;
+}
+
+void InvariantEncoder::EncodeRow(std::span<const Pixel> shifts,
+                                 std::span<std::vector<std::uint64_t>> patterns) const {
+  const std::ptrdiff_t first = Moved(shifts.front());
+  bool neighbours = options_.cells == Cells::kGradient;
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    neighbours = neighbours && Moved(shifts[i]) == first + static_cast<std::ptrdiff_t>(i);
+  }
+  if (!neighbours) {
+    for (std::size_t i = 0; i < shifts.size(); ++i) Encode(shifts[i], patterns[i]);
+    return;
+  }
+  pool_.For(static_cast<std::int64_t>(offsets_.size()) / kSynapses, 64,
+            [&](std::int64_t begin, std::int64_t end) {
+              std::vector<std::uint64_t> words(kWords * shifts.size());
+              for (std::int64_t n = begin; n < end; ++n) {
+                GatherRow(rising_.data() + first, offsets_.data() + n * kSynapses, words);
+                for (std::size_t i = 0; i < shifts.size(); ++i) {
+                  for (std::size_t w = 0; w < kWords; ++w) {
+                    patterns[i][static_cast<std::size_t>(n) * kWords + w] =
+                        words[w * shifts.size() + i];
+                  }
+                }
+              }
+            });
+}
+
+void InvariantEncoder::Encode(Pixel shift, std::span<std::uint64_t> pattern) const {
+  const std::ptrdiff_t moved = Moved(shift);
   pool_.For(static_cast<std::int64_t>(offsets_.size()) / kSynapses, 128,
             [&](std::int64_t begin, std::int64_t end) {
               for (std::int64_t n = begin; n < end; ++n) {

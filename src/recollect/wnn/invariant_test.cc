@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -107,6 +108,33 @@ TEST(Invariant, ADisplacedImageIsFoundUnderItsDisplacement) {
   still.shift_x = still.shift_y = 0;
   Encoder unmoved(still, 320, 240, pool);
   EXPECT_LT(RecollectImage(memory, unmoved, View(live), pool).confidence, found.confidence);
+}
+
+TEST(Invariant, RowsOfDisplacementsAreTheSameAsEachAlone) {
+  ThreadPool pool(2);
+  for (const int width : {320, 640, 250}) {  // one working pixel a step, and uneven steps
+    for (const Cells cells : {Cells::kGradient, Cells::kRank}) {
+      NetworkOptions options = RecollectNetwork();
+      options.neurons_x = 6;
+      options.neurons_y = 4;
+      options.cells = cells;
+      options.shift_x = cells == Cells::kGradient ? 128 : 16;  // 65 displacements: a tail
+      options.shift_y = 16;
+      const cv::Mat scene = Scene(2, width, 200);
+      Encoder encoder(options, width, 200, pool);
+      const Displacements grid = encoder.closer_displacements();
+      const auto patterns = encoder.EncodeDisplaced(View(scene), grid);
+      for (int d = 0; d < grid.count(); ++d) {
+        const auto pixels = [&](int steps) {
+          return static_cast<int>(std::lround(steps * grid.step * width / 640.0));
+        };
+        const Pixel shift{pixels(d % grid.columns - grid.columns / 2),
+                          pixels(d / grid.columns - grid.rows / 2)};
+        ASSERT_EQ(patterns[static_cast<std::size_t>(d)], encoder.Encode(View(scene), shift))
+            << width << " " << d;
+      }
+    }
+  }
 }
 
 TEST(Invariant, VotesUnderFarDisplacementsDoNotAddUp) {
