@@ -1,7 +1,7 @@
 # Everything a fresh Debian 12 machine needs is one word away: make demo, make test.
 PACKAGES = build-essential cmake ninja-build ccache pkg-config \
   libtorch-dev libopencv-dev libembree-dev libeigen3-dev libopenblas0-pthread libcli11-dev libspdlog-dev \
-  nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev libgloo-dev libfaiss-dev \
+  nlohmann-json3-dev liblmdb-dev libgtest-dev libbenchmark-dev libgloo-dev libdnnl-dev libonnx-dev libprotobuf-dev libfaiss-dev \
   gnuplot-nox
 # The page of reports is built with npm, and tested in a browser; the demo needs neither.
 WEB_PACKAGES := $(shell command -v npm >/dev/null || echo nodejs npm)

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "laps.h"
 #include "localizer_flags.h"
+#include "recollect/benchmark/cnn_bench.h"
 #include "recollect/benchmark/pipeline_bench.h"
 #include "recollect/benchmark/search_bench.h"
 #include "recollect/core/error.h"
@@ -68,6 +69,32 @@ void AddPipeline(CLI::App& bench) {
       ->capture_default_str();
 }
 
+struct CnnFlags {
+  Common common;
+  CnnBenchOptions options;
+};
+
+void RunCnn(CnnFlags flags) {
+  flags.options.threads = flags.common.threads;
+  flags.options.seed = flags.common.seed;
+  const nlohmann::json figures = RunCnnBench(flags.options, TerminalProgress());
+  fmt::print("{}", DescribeCnnBench(figures));
+  WriteFigures(flags.common, figures);
+}
+
+void AddCnn(CLI::App& bench) {
+  const auto flags = std::make_shared<CnnFlags>();
+  CLI::App* command = AddCommand(bench, "cnn", "Training and asking the networks, beside libtorch",
+                                 flags->common, [flags] { RunCnn(*flags); });
+  const auto add = [&](const char* name, int& field, const char* what) {
+    command->add_option(name, field, what)->check(CLI::PositiveNumber)->capture_default_str();
+  };
+  add("--batch", flags->options.batch, "pairs a training step");
+  add("--steps", flags->options.steps, "training steps measured");
+  add("--questions", flags->options.questions, "pairs asked one after the other");
+  add("--checks", flags->options.checks, "pairs whose answers are compared");
+}
+
 }  // namespace
 
 void AddBench(CLI::App& app) {
@@ -112,6 +139,7 @@ void AddBench(CLI::App& app) {
   search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");
   AddWnnFlags(*search, options.corpus.network);
   AddPipeline(*bench);
+  AddCnn(*bench);
 }
 
 }  // namespace recollect::app

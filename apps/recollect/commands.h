@@ -16,6 +16,7 @@ void AddExperimentPairs(CLI::App& experiment);
 void AddExperimentPaper(CLI::App& experiment);
 void AddLocalize(CLI::App& app);
 void AddMap(CLI::App& app);
+void AddModel(CLI::App& app);
 void AddBench(CLI::App& app);
 void AddPlaces(CLI::App& app);
 void AddSimulate(CLI::App& app);

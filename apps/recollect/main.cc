@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   AddExperiment(app);
   AddLocalize(app);
   AddMap(app);
+  AddModel(app);
   AddBench(app);
   AddPlaces(app);
   AddSimulate(app);

@@ -1,14 +1,31 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <memory>
+#include <thread>
 
 #include "command.h"
 #include "commands.h"
 #include "laps.h"
+#include "local_ranks.h"
 #include "recollect/cnn/trainer.h"
 
 namespace recollect::app {
 namespace {
+
+static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<bool> stop_wanted = false;
+
+// The first Ctrl-C is heard between two steps, the second ends the program as ever.
+void HearSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_wanted = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
 
 // Flags that replace a field of the network's preset when they are given.
 struct TrainFlags {
@@ -16,7 +33,8 @@ struct TrainFlags {
   LapFlags laps;
   std::vector<std::string> valid;
   std::string network = "compact";
-  std::string schedule;
+  std::string schedule, loss;
+  int ranks = 1;  // processes to start on this machine
   bool worlds_apart = false;
   cnn::TrainOptions given;
 };
@@ -43,6 +61,9 @@ struct TrainCommand {
     take("--schedule", options.schedule,
          flags.schedule == "cosine" ? cnn::Schedule::kCosine : cnn::Schedule::kHalving);
     take("--augment", options.augment, given.augment);
+    take("--loss", options.loss.kind,
+         flags.loss.empty() ? cnn::LossKind::kProjection : cnn::LossKindFromName(flags.loss));
+    take("--beta", options.loss.beta, given.loss.beta);
     take("--far", options.loss.far_metres, given.loss.far_metres);
     take("--correspondence", options.loss.correspondence_weight, given.loss.correspondence_weight);
     take("--depth-loss", options.loss.depth_weight, given.loss.depth_weight);
@@ -55,6 +76,8 @@ struct TrainCommand {
     options.threads = flags.common.threads;
     options.out = given.out;
     options.csv = given.csv;
+    options.live = given.live;
+    options.stop = [] { return stop_wanted.load(); };
     options.checkpoint = given.checkpoint;
     options.start = given.start;
     options.resume = given.resume;
@@ -62,7 +85,25 @@ struct TrainCommand {
   }
 
   void Run() const {
-    const cnn::TrainOptions options = Options();
+    cnn::TrainOptions options = Options();
+    if (flags.ranks == 1) {
+      options.ranks = cnn::RankOptionsFromEnvironment();
+      Train(options);
+      return;
+    }
+    if (options.threads == 0) {  // the cores are shared out
+      const int cores = static_cast<int>(std::thread::hardware_concurrency());
+      options.threads = std::max(1, cores / flags.ranks);
+    }
+    RunLocalRanks(flags.ranks, [&](const cnn::RankOptions& ranks) {
+      options.ranks = ranks;
+      Train(options);
+    });
+  }
+
+  void Train(const cnn::TrainOptions& options) const {
+    HearSignals();
+    const bool first = options.ranks.rank == 0;
     const std::vector<Lap> laps = flags.laps.Read(flags.worlds_apart);
     std::vector<Lap> valid;
     for (const std::string& folder : flags.valid) {
@@ -70,7 +111,9 @@ struct TrainCommand {
         valid.push_back(std::move(lap));
       }
     }
-    const cnn::TrainResult result = cnn::Train(laps, valid, options, TerminalProgress());
+    const cnn::TrainResult result =
+        cnn::Train(laps, valid, options, first ? TerminalProgress() : ProgressSink());
+    if (!first) return;
     const cnn::PairFigures& figures = result.model.validation;
     fmt::print(
         "{}: network {}, {} parameters, {} steps in {:.0f} s, best at step {}\n"
@@ -113,6 +156,8 @@ void AddTrain(CLI::App& app) {
   command.add_option("--warm-up", given.warm_up_steps, "steps over which the rate rises");
   command.add_option("--weight-decay", given.weight_decay, "decoupled weight decay");
   command.add_flag("--augment,!--no-augment", given.augment, "vary light and colours");
+  command.add_option("--loss", flags.loss, "projection, reprojection, l2 or homoscedastic");
+  command.add_option("--beta", given.loss.beta, "of --loss l2: metres that a radian counts as");
   command.add_option("--far", given.loss.far_metres, "points beyond count as being so far; 0: off");
   command.add_option("--correspondence", given.loss.correspondence_weight,
                      "weight of the correspondence loss; 0: off");
@@ -127,6 +172,12 @@ void AddTrain(CLI::App& app) {
                      "share of the road to validate on when there is no --valid");
   command.add_option("--patience", given.patience, "validations without gain before the end");
   command.add_option("--csv", given.csv, "file for the curves");
+  command.add_option("--live", given.live, "file for the curves as a page that stays up to date");
+  command
+      .add_option("--ranks", flags.ranks,
+                  "processes to train in; on several machines set RANK, WORLD_SIZE, MASTER_ADDR "
+                  "and MASTER_PORT instead")
+      ->check(CLI::Range(1, 64));
   command.add_option("--checkpoint", given.checkpoint, "default: OUT.checkpoint");
   command.add_option("--start", given.start, "a model to begin with; without: fresh weights")
       ->check(CLI::ExistingFile);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "recollect/cnn/elementwise.h"
 #include "recollect/cnn/tensor_file.h"
 
 namespace recollect::cnn {
@@ -23,8 +24,9 @@ class Adam {
  public:
   Adam(torch::nn::Module& network, const AdamOptions& options);
 
-  // One step down the parameters' gradients, which are then cleared.
-  void Step(double learning_rate);
+  // One step down the parameters' gradients, which are then cleared. False where a gradient is not
+  // finite: nothing has changed then but that they are cleared.
+  bool Step(double learning_rate);
 
   // The moments, named after the parameters; and back, for the step number they were taken at.
   std::vector<NamedTensor> State() const;
@@ -35,6 +37,9 @@ class Adam {
     std::string name;
     torch::Tensor parameter, mean, square;
   };
+  static void StepInOnePass(Slot& slot, const torch::Tensor& gradient, const AdamRates& rates);
+  static void StepByTensors(Slot& slot, const torch::Tensor& gradient, const AdamRates& rates);
+
   AdamOptions options_;
   std::vector<Slot> slots_;
   std::int64_t step_ = 0;

@@ -12,7 +12,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CurvePoint, step, epoch, seconds, learning_ra
                                    projection_m, correspondence, depth, train_position_m,
                                    valid_position_m, valid_heading_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainingState, step, seconds_before, best_m, without_gain, curve,
-                                   options)
+                                   skipped, sums, sum_steps, options)
 
 void WriteCheckpoint(const std::filesystem::path& path, const TrainingState& state,
                      const torch::nn::Module& network, const Adam& adam) {
@@ -42,7 +42,7 @@ TrainingState ReadCheckpoint(const std::filesystem::path& path, const std::strin
   for (auto& parameter : network.named_parameters()) {
     parameter.value().copy_(file.Find(parameter.key(), parameter.value(), where));
   }
-  adam.Restore(file, state.step, where);
+  adam.Restore(file, state.step - state.skipped, where);
   return state;
 }
 

@@ -15,8 +15,11 @@ struct TrainingState {
   std::int64_t step = 0;
   double seconds_before = 0;  // spent before this run of the program
   double best_m = std::numeric_limits<double>::max();
-  int without_gain = 0;  // validations since the best
+  int without_gain = 0;      // validations since the best
+  std::int64_t skipped = 0;  // steps left out because a gradient was not finite
   std::vector<CurvePoint> curve;
+  CurvePoint sums;  // of the losses since the last validation
+  std::int64_t sum_steps = 0;
   std::string options;  // ToJson of the training's options
 };
 

@@ -114,7 +114,7 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
   const torch::Tensor known_depth = log_depth.clamp(0, 6);  // 1 to 400 m
 
   Sightings sightings;
-  const torch::Tensor rays = RayGrid(cells_);
+  const torch::Tensor rays = RayGrid(cells_).to(live.device());
   sightings.points = Grid3d(known_depth.squeeze(1).exp(), rays);
   sightings.seen =
       rays.slice(0, 0, 2).flatten(1) +
@@ -126,7 +126,7 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
   const torch::Tensor depth = known_depth.detach();
   const torch::Tensor head_input =
       torch::cat({flow * share, share, trust, (-depth).exp() * 10.0, depth / 4.0,
-                  PlaceMap(grid, batch), context_->forward(live_features)},
+                  PlaceMap(grid, batch, live.options()), context_->forward(live_features)},
                  1);
   const torch::Tensor raw = output_->forward(motion_->forward(head_input).flatten(1));
   const torch::Tensor correction =

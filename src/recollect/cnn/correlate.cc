@@ -126,6 +126,7 @@ class CorrelateFunction : public torch::autograd::Function<CorrelateFunction> {
 Correlation Correlate(const torch::Tensor& live, const torch::Tensor& key, const Grid& grid) {
   Require(grid.rows >= kSide && grid.columns >= kSide, "CompactNetwork",
           "the image is too small: 40 x 40 pixels are the least");
+  if (!live.is_cpu()) return CorrelateByTensors(live, key, grid);
   const auto out =
       CorrelateFunction::apply(live.contiguous(), key.contiguous(), grid.rows, grid.columns);
   return {out[0], out[1], out[2], out[3]};

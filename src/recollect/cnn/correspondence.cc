@@ -4,11 +4,26 @@
 
 namespace recollect::cnn {
 
-torch::Tensor PlaceMap(const Grid& grid, std::int64_t batch) {
-  const torch::Tensor x = torch::linspace(-1, 1, grid.columns).view({1, 1, 1, grid.columns});
-  const torch::Tensor y = torch::linspace(-1, 1, grid.rows).view({1, 1, grid.rows, 1});
+torch::Tensor PlaceMap(const Grid& grid, std::int64_t batch, const torch::TensorOptions& options) {
+  const torch::Tensor x =
+      torch::linspace(-1, 1, grid.columns, options).view({1, 1, 1, grid.columns});
+  const torch::Tensor y = torch::linspace(-1, 1, grid.rows, options).view({1, 1, grid.rows, 1});
   const std::array<std::int64_t, 4> shape = {batch, 1, grid.rows, grid.columns};
   return torch::cat({x.expand(shape), y.expand(shape)}, 1);
+}
+
+Correlation CorrelateByTensors(const torch::Tensor& live, const torch::Tensor& key,
+                               const Grid& grid) {
+  const torch::Tensor scores = torch::bmm(live.transpose(1, 2), key);
+  const torch::Tensor best = scores.argmax(2);
+  const torch::Tensor column = best.remainder(grid.columns).clamp(2, grid.columns - 3);
+  const torch::Tensor row = best.div(grid.columns, "floor").clamp(2, grid.rows - 3);
+  const torch::Tensor reach = torch::arange(-2, 3, best.options());
+  const torch::Tensor around =
+      (reach.unsqueeze(1) * grid.columns + reach.unsqueeze(0)).flatten();  // [25]
+  const torch::Tensor places = (row * grid.columns + column).unsqueeze(2) + around;
+  return {scores.logsumexp(2), scores.gather(2, places), column.to(live.options()),
+          row.to(live.options())};
 }
 
 PeakFlow ReadPeaks(const Correlation& correlation, const Grid& grid) {
@@ -40,7 +55,7 @@ TrueFlow ProjectCells(const torch::Tensor& points, const torch::Tensor& valid,
 
 torch::Tensor CorrespondenceLoss(const torch::Tensor& live, const torch::Tensor& key,
                                  const torch::Tensor& total, const TrueFlow& truth,
-                                 const Grid& grid) {
+                                 const Grid& grid, const Divisor& divisor) {
   // The score is linear in the key frame's feature, so the four scores around the truth, weighed
   // bilinearly, are one score: that of the feature interpolated there.
   namespace F = torch::nn::functional;
@@ -53,8 +68,7 @@ torch::Tensor CorrespondenceLoss(const torch::Tensor& live, const torch::Tensor&
       F::grid_sample(key.view({key.size(0), key.size(1), grid.rows, grid.columns}), places,
                      F::GridSampleFuncOptions().align_corners(true).padding_mode(torch::kBorder));
   const torch::Tensor expected = (live * there.squeeze(2)).sum(1);
-  const torch::Tensor visible = truth.visible.to(total.scalar_type());
-  return ((total - expected) * visible).sum() / visible.sum().clamp_min(1.0);
+  return WeightedMean(total - expected, truth.visible.to(total.scalar_type()), divisor);
 }
 
 }  // namespace recollect::cnn

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "recollect/cnn/loss.h"
+
 // Where the cells of a live image are seen in a key frame: reading it off the correlation of the
 // two feature grids, and the truth to train the correlation with. Cells are numbered in row order,
 // displacements are (columns, rows) in cells, B is the batch and N the number of cells.
@@ -15,7 +17,8 @@ struct Grid {
 };
 
 // Places of the cells, columns and rows each from -1 to 1: [B, 2, rows, columns].
-torch::Tensor PlaceMap(const Grid& grid, std::int64_t batch);
+torch::Tensor PlaceMap(const Grid& grid, std::int64_t batch,
+                       const torch::TensorOptions& options = {});
 
 // Scores of all N key-frame cells for each of the N live cells, as far as they are of use.
 struct Correlation {
@@ -29,6 +32,10 @@ struct Correlation {
 // N x N scores are never kept, but made anew on the way back: they are by far the largest thing
 // that a network of this kind would have to remember.
 Correlation Correlate(const torch::Tensor& live, const torch::Tensor& key, const Grid& grid);
+
+// The same on any device, by libtorch's operations and with all scores at once.
+Correlation CorrelateByTensors(const torch::Tensor& live, const torch::Tensor& key,
+                               const Grid& grid);
 
 struct PeakFlow {
   torch::Tensor displacement;  // [B, 2, N]: key-frame place minus live place, expected
@@ -57,6 +64,6 @@ TrueFlow ProjectCells(const torch::Tensor& points, const torch::Tensor& valid,
 // Features as given to Correlate, total as it returned.
 torch::Tensor CorrespondenceLoss(const torch::Tensor& live, const torch::Tensor& key,
                                  const torch::Tensor& total, const TrueFlow& truth,
-                                 const Grid& grid);
+                                 const Grid& grid, const Divisor& divisor = {});
 
 }  // namespace recollect::cnn

@@ -67,6 +67,19 @@ TEST(Correlate, FloatEqualsDouble) {
   }
 }
 
+// The way that other devices go.
+TEST(Correlate, ByTensorsIsTheSame) {
+  const Grid grid{7, 9};
+  const torch::Tensor live = torch::randn({2, 8, 63}, torch::kDouble),
+                      key = torch::randn({2, 8, 63}, torch::kDouble);
+  const Correlation expected = Correlate(live, key, grid);
+  const Correlation got = CorrelateByTensors(live, key, grid);
+  EXPECT_TRUE(torch::allclose(got.total, expected.total));
+  EXPECT_TRUE(torch::allclose(got.window, expected.window));
+  EXPECT_TRUE(torch::equal(got.columns, expected.columns));
+  EXPECT_TRUE(torch::equal(got.rows, expected.rows));
+}
+
 TEST(Correlate, RefusesGridsSmallerThanItsWindow) {
   EXPECT_THROW(Correlate(torch::zeros({1, 2, 20}), torch::zeros({1, 2, 20}), {4, 5}), Error);
 }

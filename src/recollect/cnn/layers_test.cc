@@ -139,10 +139,44 @@ TEST_F(ProjectionLossTest, GradientIsFiniteAtTheTruth) {
   EXPECT_TRUE(delta.grad().isfinite().all().item<bool>());
 }
 
-TEST(WeightedPoseLoss, Gradient) {
-  const torch::Tensor truth = torch::randn({3, 6}, torch::kDouble);
-  ExpectGradients([&](const auto& in) { return WeightedPoseLoss(in[0], truth, 7.0); },
-                  {torch::randn({3, 6}, torch::kDouble)});
+TEST_F(ProjectionLossTest, ReprojectionIsThePixelsBetweenTheProjections) {
+  torch::Tensor delta = torch::zeros({2, 6}, torch::kDouble);
+  const torch::Tensor still = Se3Layer(delta);
+  const torch::Tensor ahead = torch::tensor({{1.0, 2.0}, {0.5, 0.0}, {10.0, 0.1}}, torch::kDouble)
+                                  .unsqueeze(0)
+                                  .repeat({2, 1, 1});  // the second point is too near to count
+  delta.select(1, 3).fill_(0.2);
+  const torch::Tensor valid = torch::ones({2, 2}, torch::kBool);
+  EXPECT_NEAR(ReprojectionLoss(Se3Layer(delta), still, ahead, valid, 200, 300).item<double>(),
+              200 * 0.2 / 10, 1e-4);
+}
+
+TEST_F(ProjectionLossTest, ReprojectionGradientThroughSe3) {
+  const torch::Tensor ahead =
+      torch::cat({points_.slice(1, 0, 2), points_.slice(1, 2, 3).abs() + 6}, 1);
+  ExpectGradients(
+      [&](const auto& in) {
+        return ReprojectionLoss(Se3Layer(in[0]), truth_, ahead, valid_, 200, 300);
+      },
+      {torch::randn({2, 6}, torch::kDouble) * 0.1});
+}
+
+TEST(PoseLosses, DistanceIsMetresAndRadians) {
+  const torch::Tensor delta = torch::tensor({{0.0, 0.02, 0.0, 3.0, 0.0, 4.0}}, torch::kDouble);
+  const MotionDistance d =
+      DistanceBetween(Se3Layer(delta), Se3Layer(torch::zeros({1, 6}, torch::kDouble)));
+  EXPECT_NEAR(d.translation.item<double>(), 5, 1e-6);
+  EXPECT_NEAR(d.rotation.item<double>(), 0.02, 1e-4);
+}
+
+TEST(PoseLosses, Gradients) {
+  torch::manual_seed(11);
+  const torch::Tensor truth = Se3Layer(torch::randn({3, 6}, torch::kDouble) * 0.3);
+  const torch::Tensor delta = torch::randn({3, 6}, torch::kDouble) * 0.3;
+  ExpectGradients([&](const auto& in) { return WeightedPoseLoss(Se3Layer(in[0]), truth, 7.0); },
+                  {delta});
+  ExpectGradients([&](const auto& in) { return HomoscedasticLoss(Se3Layer(in[0]), truth, in[1]); },
+                  {delta, torch::tensor({0.3, -2.0}, torch::kDouble)});
 }
 
 }  // namespace

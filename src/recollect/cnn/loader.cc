@@ -42,9 +42,13 @@ torch::Tensor PrepareImage(NetworkKind kind, const cv::Mat& image) {
   return out;
 }
 
+Batch Batch::To(const torch::Device& device) const {
+  return {live.to(device), key.to(device), motion.to(device), depth.to(device)};
+}
+
 namespace {
 
-// See MakeBatch; `light` is applied to each image.
+// See MakeBatch; `light` is applied to each image, and told which of `chosen` it is of.
 template <typename Light>
 Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen,
                const Light& light) {
@@ -60,8 +64,8 @@ Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const Pair& pair = data.pairs[chosen[i]];
     const std::size_t at = i * static_cast<std::size_t>(3 * rows * columns);
-    PrepareInto(kind, light(data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
-    PrepareInto(kind, light(data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
+    PrepareInto(kind, light(i, data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
+    PrepareInto(kind, light(i, data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
     PutMotion(data.KeyframeFromLive(pair), batch.motion.data_ptr<float>() + i * 12);
     const cv::Mat& depth = data.frames[pair.live].depth;
     if (!depth.empty()) {
@@ -74,7 +78,7 @@ Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size
 }  // namespace
 
 Batch MakeBatch(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen) {
-  return Assemble(data, kind, chosen, [](const cv::Mat& image) { return image; });
+  return Assemble(data, kind, chosen, [](std::size_t, const cv::Mat& image) { return image; });
 }
 
 Loader::Loader(const PairData& data, const LoaderOptions& options, std::int64_t first)
@@ -143,11 +147,19 @@ Batch Loader::Make(std::int64_t number) {
   }
   const auto size = static_cast<std::size_t>(options_.batch);
   const std::size_t from = static_cast<std::size_t>(number % per_epoch) * size;
-  const auto chosen = std::span(order_).subspan(from, std::min(size, order_.size() - from));
+  const auto whole = std::span(order_).subspan(from, std::min(size, order_.size() - from));
+  const auto rank = static_cast<std::size_t>(options_.rank);
+  const auto ranks = static_cast<std::size_t>(options_.ranks);
+  const std::size_t begin = whole.size() * rank / ranks;
+  const auto chosen = whole.subspan(begin, whole.size() * (rank + 1) / ranks - begin);
   if (!options_.augment) return MakeBatch(data_, options_.kind, chosen);
-  Random random(SubSeed(SubSeed(options_.seed, 2), static_cast<std::uint64_t>(number)));
-  return Assemble(data_, options_.kind, chosen,
-                  [&](const cv::Mat& image) { return AugmentLight(image, random); });
+  // A pair's light follows from its place in the whole batch, whoever makes it.
+  const auto seed = SubSeed(SubSeed(options_.seed, 2), static_cast<std::uint64_t>(number));
+  std::vector<Random> random;
+  for (std::size_t i = 0; i < chosen.size(); ++i) random.emplace_back(SubSeed(seed, begin + i));
+  return Assemble(data_, options_.kind, chosen, [&](std::size_t i, const cv::Mat& image) {
+    return AugmentLight(image, random[i]);
+  });
 }
 
 }  // namespace recollect::cnn

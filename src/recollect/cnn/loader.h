@@ -23,6 +23,8 @@ struct Batch {
   torch::Tensor live, key;  // [B, 3, H, W]
   torch::Tensor motion;     // [B, 3, 4], true keyframe_from_live
   torch::Tensor depth;      // [B, H / kDepthStep, W / kDepthStep] of the live images, 0: unknown
+
+  Batch To(const torch::Device& device) const;
 };
 
 // Pairs `chosen` of `data`, images as they are.
@@ -33,6 +35,7 @@ struct LoaderOptions {
   int batch = 24;
   bool augment = false;  // AugmentLight on each image by itself
   std::uint64_t seed = 1;
+  int rank = 0, ranks = 1;  // of several processes each gets its own share of every batch
 };
 
 // Batches of shuffled pairs, made ahead by a thread of its own. Batch number n is the same

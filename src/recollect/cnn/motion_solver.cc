@@ -1,5 +1,7 @@
 #include "recollect/cnn/motion_solver.h"
 
+#include <ATen/Parallel.h>
+
 #include "recollect/cnn/layers.h"
 
 namespace recollect::cnn {
@@ -57,6 +59,25 @@ torch::Tensor RobustWeight(const Residuals& r, const SolverOptions& options) {
   return r.weight / (1.0 + square.detach());
 }
 
+// Without gradients: pair by pair, and so without the cost of a hundred small operations.
+torch::Tensor SolveEach(const Sightings& sightings, const SolverOptions& options) {
+  const std::int64_t batch = sightings.points.size(0), cells = sightings.points.size(2);
+  const torch::Tensor points = sightings.points.contiguous(), seen = sightings.seen.contiguous(),
+                      weight = sightings.weight.contiguous();
+  torch::Tensor motions = torch::empty({batch, 3, 4});
+  using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
+  at::parallel_for(0, batch, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      Eigen::Map<Rows>(motions.data_ptr<float>() + 12 * i) =
+          SolveCells(points.data_ptr<float>() + 3 * cells * i,
+                     seen.data_ptr<float>() + 2 * cells * i, weight.data_ptr<float>() + cells * i,
+                     cells, options)
+              .cast<float>();
+    }
+  });
+  return motions;
+}
+
 }  // namespace
 
 torch::Tensor Moved(const torch::Tensor& motion, const torch::Tensor& delta) {
@@ -74,6 +95,10 @@ torch::Tensor SolverStep(const torch::Tensor& motion, const Sightings& sightings
 
 torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options) {
   const std::int64_t batch = sightings.points.size(0);
+  if (!torch::GradMode::is_enabled() && sightings.points.is_cpu() &&
+      sightings.points.scalar_type() == torch::kFloat) {
+    return SolveEach(sightings, options);
+  }
   torch::Tensor motion =
       torch::eye(3, 4, sightings.points.options()).unsqueeze(0).repeat({batch, 1, 1});
   for (int i = 0; i < options.iterations; ++i) {

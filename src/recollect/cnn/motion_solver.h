@@ -2,6 +2,8 @@
 
 #include <torch/torch.h>
 
+#include "recollect/cnn/cell_solver.h"
+
 // The motion that best explains where points of the live image are seen in the key frame: weighted
 // least squares over all cells at once, as a layer. B is the batch, N the number of cells.
 namespace recollect::cnn {
@@ -10,15 +12,6 @@ struct Sightings {
   torch::Tensor points;  // [B, 3, N]: in the live camera's frame, metres
   torch::Tensor seen;    // [B, 2, N]: (x, y) = (X, Y) / Z where the key frame sees them
   torch::Tensor weight;  // [B, N]: 0 or more
-};
-
-struct SolverOptions {
-  int iterations = 5;
-  // A residual of this size, in x and y, halves a sighting's weight, one of three times a tenth.
-  double outlier = 0.03;
-  // Standard deviations of a motion before anything is seen; they hold the answer near "no motion"
-  // where little is known. Of x and y a sighting of weight 1 knows no better than `sighting_sd`.
-  double prior_rotation_sd = 0.1, prior_translation_sd = 4, sighting_sd = 0.03;
 };
 
 // One Gauss-Newton step from motion [B, 3, 4]: (dw, dt) [B, 6] with R <- Exp(dw) R, t <- t + dt.

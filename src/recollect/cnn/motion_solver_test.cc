@@ -45,6 +45,19 @@ TEST_F(MotionSolverTest, IsNotMisledByOutliers) {
   EXPECT_LT(error.max().item<double>(), 0.2) << motion;
 }
 
+TEST_F(MotionSolverTest, WithoutGradientsAnswersTheSame) {
+  Sightings single;
+  single.points = sightings_.points.to(torch::kFloat);
+  single.seen = sightings_.seen.to(torch::kFloat) + 0.01 * torch::randn({2, 2, 60});
+  single.weight = torch::rand({2, 60});
+  single.weight.select(1, 3).zero_();
+  single.points[0][2][5] = -3;  // behind the camera
+  const torch::Tensor expected = SolveMotion(single);
+  const torch::NoGradGuard no_gradients;
+  EXPECT_TRUE(torch::allclose(SolveMotion(single), expected, 1e-3, 1e-4))
+      << SolveMotion(single) << expected;
+}
+
 TEST_F(MotionSolverTest, SaysNoMotionWhereNothingIsSeen) {
   sightings_.weight.zero_();
   const torch::Tensor still = torch::eye(3, 4, torch::kDouble).expand({2, 3, 4});

@@ -13,6 +13,16 @@ class PaperNetwork : public PairNetwork {
   // kind: kPaperA (the authors' default) or kPaperB (larger strides in the branch).
   explicit PaperNetwork(NetworkKind kind);
   Prediction forward(const torch::Tensor& live, const torch::Tensor& key) override;
+  std::unique_ptr<PairEngine> MakeEngine(std::int64_t rows, std::int64_t columns,
+                                         Precision precision) override;
+
+  // The same as forward by libtorch's own layers, one after the other: what ours is measured
+  // against.
+  Prediction ForwardPlain(const torch::Tensor& live, const torch::Tensor& key);
+
+  // The layers, for those who do them in another way.
+  const torch::nn::Sequential& branch() const { return branch_; }
+  const torch::nn::Sequential& top() const { return top_; }
 
  private:
   torch::nn::Sequential branch_, top_;

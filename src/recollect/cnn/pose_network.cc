@@ -3,6 +3,8 @@
 #include <torch/torch.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -38,20 +40,71 @@ void CopyWeights(const TensorFile& file, const std::string& where, PairNetwork& 
   }
 }
 
+// Images as the network takes them, each once, and who is paired with whom.
+struct Prepared {
+  std::vector<torch::Tensor> images;
+  std::vector<ImagePair> pairs;
+};
+
+Prepared Prepare(const ModelInfo& info, std::span<const CropPair> pairs) {
+  Prepared prepared;
+  std::map<std::pair<const void*, std::size_t>, std::int64_t> known;
+  const auto number = [&](const cv::Mat& image) {
+    RequireCrop(image, info.crop);
+    const auto [found, fresh] = known.try_emplace(
+        {image.data, image.step}, static_cast<std::int64_t>(prepared.images.size()));
+    if (fresh) prepared.images.push_back(PrepareImage(info.network, image));
+    return found->second;
+  };
+  for (const CropPair& pair : pairs) {
+    const std::int64_t live = number(pair.live);
+    prepared.pairs.push_back({live, number(pair.key)});
+  }
+  return prepared;
+}
+
+// [pairs, 3, 4].
+torch::Tensor Forward(PairNetwork& network, const Prepared& prepared) {
+  const torch::Device device = network.parameters().front().device();
+  std::vector<torch::Tensor> live, key;
+  for (const ImagePair& pair : prepared.pairs) {
+    live.push_back(prepared.images[static_cast<std::size_t>(pair.live)]);
+    key.push_back(prepared.images[static_cast<std::size_t>(pair.key)]);
+  }
+  return network.forward(torch::stack(live).to(device), torch::stack(key).to(device)).motion.cpu();
+}
+
 }  // namespace
 
-PoseNetwork::PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network)
-    : info_(std::move(info)), network_(std::move(network)) {
+// Made at the first question, and shared by copies.
+struct PoseNetwork::Engine {
+  Precision precision;
+  std::once_flag asked;
+  std::unique_ptr<PairEngine> engine;
+
+  PairEngine* Get(PairNetwork& network, const Crop& crop) {
+    std::call_once(asked, [&] {
+      if (!network.parameters().front().device().is_cpu()) return;
+      engine = network.MakeEngine(crop.height, crop.width, precision);
+    });
+    return engine.get();
+  }
+};
+
+PoseNetwork::PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network, Precision precision)
+    : info_(std::move(info)),
+      network_(std::move(network)),
+      engine_(std::make_shared<Engine>(precision)) {
   network_->eval();
 }
 
-PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads) {
+PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads, Precision precision) {
   SetThreads(threads);
   const TensorFile file = ReadModel(path);
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), path.string());
   auto network = MakeNetwork(info.network, info.camera);
   CopyWeights(file, path.string(), *network);
-  return {info, network};
+  return {info, network, precision};
 }
 
 void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network) {
@@ -88,15 +141,13 @@ std::vector<SE3> PoseNetwork::KeyframeFromLive(std::span<const CropPair> pairs) 
   std::vector<SE3> motions;
   motions.reserve(pairs.size());
   for (std::size_t from = 0; from < pairs.size(); from += kBatch) {
-    std::vector<torch::Tensor> live, key;
-    for (const CropPair& pair : pairs.subspan(from, std::min(kBatch, pairs.size() - from))) {
-      RequireCrop(pair.live, info_.crop);
-      RequireCrop(pair.key, info_.crop);
-      live.push_back(PrepareImage(info_.network, pair.live));
-      key.push_back(PrepareImage(info_.network, pair.key));
-    }
+    const Prepared prepared =
+        Prepare(info_, pairs.subspan(from, std::min(kBatch, pairs.size() - from)));
+    PairEngine* engine = engine_->Get(*network_, info_.crop);
     const torch::Tensor out =
-        network_->forward(torch::stack(live), torch::stack(key)).motion.contiguous();
+        (engine != nullptr ? engine->KeyframeFromLive(torch::stack(prepared.images), prepared.pairs)
+                           : Forward(*network_, prepared))
+            .contiguous();
     for (std::int64_t i = 0; i < out.size(0); ++i) {
       using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
       const Eigen::Matrix<double, 3, 4> motion =

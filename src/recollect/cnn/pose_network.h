@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recollect/cnn/model_info.h"
+#include "recollect/cnn/precision.h"
 #include "recollect/geometry/se3.h"
 
 namespace recollect::cnn {
@@ -24,13 +25,17 @@ class PoseNetwork {
  public:
   // Throws Error naming the file when it is missing, damaged or not a model. threads: how many
   // torch may use, in this and every other network of the program; 0: one for each core.
-  static PoseNetwork Load(const std::filesystem::path& path, int threads = 0);
+  static PoseNetwork Load(const std::filesystem::path& path, int threads = 0,
+                          Precision precision = Precision::kFloat32);
 
   // The paper's network B before any training: its answer is "no motion", always. For images of
   // the given size; what evaluation and tests set a trained network against.
   static PoseNetwork Untrained(int image_width, int image_height);
 
-  PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network);
+  // The weights that the first question finds are those that all answers are made with: they are
+  // packed for speed then (where the network has an engine and lies on the processor).
+  PoseNetwork(ModelInfo info, std::shared_ptr<PairNetwork> network,
+              Precision precision = Precision::kFloat32);
 
   // Written beside its target and renamed into place. Throws Error when that fails.
   void Save(const std::filesystem::path& path) const;
@@ -43,14 +48,18 @@ class PoseNetwork {
   // a crop has another size or type than crop() says.
   SE3 KeyframeFromLive(const cv::Mat& live_crop, const cv::Mat& key_crop) const;
 
-  // The same for many pairs at once, in their order.
+  // The same for many pairs at once, in their order. Of crops that share their pixels, as where
+  // one live image is related to several key frames, the features are made once.
   std::vector<SE3> KeyframeFromLive(std::span<const CropPair> pairs) const;
 
   const std::shared_ptr<PairNetwork>& network() const { return network_; }
 
  private:
+  struct Engine;
+
   ModelInfo info_;
   std::shared_ptr<PairNetwork> network_;
+  std::shared_ptr<Engine> engine_;
 };
 
 // Copies a model file's weights into a network of the same kind, made for any camera. Throws Error

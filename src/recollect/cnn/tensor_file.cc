@@ -89,7 +89,7 @@ void WriteTensorFile(const std::filesystem::path& path, const TensorFile& conten
   Append(bytes, text.size());
   bytes += text;
   for (const auto& [name, tensor] : content.tensors) {
-    const torch::Tensor values = tensor.detach().to(torch::kFloat).contiguous();
+    const torch::Tensor values = tensor.detach().to(torch::kCPU, torch::kFloat).contiguous();
     bytes.append(reinterpret_cast<const char*>(values.data_ptr<float>()), values.nbytes());
   }
   Append(bytes, Checksum(bytes));

@@ -1,11 +1,37 @@
 #include "recollect/cnn/train_options.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "recollect/cnn/checkpoint.h"
 #include "recollect/core/error.h"
 
 namespace recollect::cnn {
+namespace {
+
+constexpr std::array<std::pair<LossKind, const char*>, 4> kLosses = {
+    {{LossKind::kProjection, "projection"},
+     {LossKind::kReprojection, "reprojection"},
+     {LossKind::kL2, "l2"},
+     {LossKind::kHomoscedastic, "homoscedastic"}}};
+
+}  // namespace
+
+std::string Name(LossKind kind) {
+  for (const auto& [candidate, name] : kLosses) {
+    if (candidate == kind) return name;
+  }
+  throw Error("loss", "is of no known kind");
+}
+
+LossKind LossKindFromName(const std::string& name) {
+  for (const auto& [kind, candidate] : kLosses) {
+    if (candidate == name) return kind;
+  }
+  throw Error("loss",
+              fmt::format("'{}' is not one of projection, reprojection, l2, homoscedastic", name));
+}
 
 TrainOptions TrainOptions::Paper(NetworkKind kind) {
   TrainOptions options;
@@ -41,6 +67,8 @@ std::string ToJson(const TrainOptions& o) {
                         {"far_metres", o.loss.far_metres},
                         {"correspondence_weight", o.loss.correspondence_weight},
                         {"depth_weight", o.loss.depth_weight},
+                        {"loss", Name(o.loss.kind)},
+                        {"beta", o.loss.beta},
                         {"max_distance_m", o.pairs.max_distance_m},
                         {"max_angle_rad", o.pairs.max_angle_rad},
                         {"key_spacing_m", o.pairs.key_spacing_m},
@@ -65,6 +93,10 @@ void RequireSensible(const TrainOptions& o) {
   require(o.validation_share > 0 && o.validation_share < 1, "validation share", "within (0, 1)");
   require(o.loss.far_metres >= 0 && o.loss.correspondence_weight >= 0 && o.loss.depth_weight >= 0,
           "loss", "zero or more in all its parts");
+  require(o.loss.beta > 0, "beta", "positive");
+  require(o.ranks.ranks >= 1 && o.ranks.rank >= 0 && o.ranks.rank < o.ranks.ranks, "rank",
+          "within [0, ranks)");
+  require(o.batch % o.ranks.ranks == 0, "batch", "a multiple of the number of ranks");
   require(!o.out.empty(), "out", "the name of a file");
 }
 

@@ -2,17 +2,34 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "recollect/cnn/network_kind.h"
 #include "recollect/cnn/pair_data.h"
+#include "recollect/cnn/rank_options.h"
 
 namespace recollect::cnn {
+
+// What a pose is judged by (loss.h).
+enum class LossKind {
+  kProjection,     // the paper's: distances of the live image's points, metres
+  kReprojection,   // distances of their projections in the key frame, pixels
+  kL2,             // |t| + beta |rotation|
+  kHomoscedastic,  // the same with weights that are learnt along
+};
+
+// "projection", "reprojection", "l2", "homoscedastic", and back; throws Error on any other name.
+std::string Name(LossKind kind);
+LossKind LossKindFromName(const std::string& name);
 
 struct LossOptions {
   double far_metres = 0;  // points further away are drawn to this depth (ProjectionLoss); 0: none
   // Of the auxiliary losses of networks that correlate (the paper has neither); 0 switches off.
   double correspondence_weight = 0;  // CorrespondenceLoss
   double depth_weight = 0;           // mean |log predicted depth / true depth|
+  LossKind kind = LossKind::kProjection;
+  double beta = 10;  // of kL2: metres that a radian counts as
 };
 
 enum class Schedule {
@@ -46,12 +63,16 @@ struct TrainOptions {
   int threads = 0;  // 0: one for each core
 
   std::filesystem::path
-      start;                  // a model file whose weights training begins with; empty: fresh ones
-  std::filesystem::path out;  // the model file; the best by validation so far is always there
-  std::filesystem::path csv;  // curves, a row a validation; empty: none
+      start;                   // a model file whose weights training begins with; empty: fresh ones
+  std::filesystem::path out;   // the model file; the best by validation so far is always there
+  std::filesystem::path csv;   // curves, a row a validation; empty: none
+  std::filesystem::path live;  // the same as a page that a browser keeps up to date; empty: none
   // Where training can be taken up again; written at each validation, removed at the end.
   std::filesystem::path checkpoint;  // empty: `out` with ".checkpoint" added
   bool resume = false;               // take up from the checkpoint if there is one
+  std::function<bool()> stop;        // asked after each step: true writes a checkpoint and ends
+
+  RankOptions ranks;  // one of several processes that train one network together
 
   // The paper's regime for its network A or B.
   static TrainOptions Paper(NetworkKind kind);

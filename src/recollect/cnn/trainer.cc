@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
 
 #include "recollect/cnn/adam.h"
 #include "recollect/cnn/checkpoint.h"
+#include "recollect/cnn/live_curve.h"
 #include "recollect/cnn/loader.h"
 #include "recollect/cnn/pair_network.h"
 #include "recollect/cnn/pose_network.h"
+#include "recollect/cnn/ranks.h"
 #include "recollect/cnn/threads.h"
 #include "recollect/cnn/training_data.h"
 #include "recollect/cnn/training_loss.h"
@@ -23,33 +26,40 @@
 namespace recollect::cnn {
 namespace {
 
-// Means of the losses since the last validation.
-class LossMeans {
- public:
-  void Add(const Losses& losses) {
-    const auto add = [](double& sum, const torch::Tensor& value) {
-      if (value.defined()) sum += value.item<double>();
-    };
-    add(sum_.loss, losses.total);
-    add(sum_.projection_m, losses.projection);
-    add(sum_.correspondence, losses.correspondence);
-    add(sum_.depth, losses.depth);
-    add(sum_.train_position_m, losses.position_m);
-    ++count_;
-  }
-  CurvePoint Take() {
-    CurvePoint mean = std::exchange(sum_, {});
-    const double count = std::max(1, std::exchange(count_, 0));
-    for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth,
-                          &mean.train_position_m}) {
-      *value /= count;
-    }
-    return mean;
-  }
+constexpr int kBadStepsInARow = 20;         // after which training is given up
+constexpr double kSecondsBetweenPages = 5;  // of the live curve
 
- private:
-  CurvePoint sum_;
-  int count_ = 0;
+void AddLosses(const Losses& losses, TrainingState& state) {
+  const auto add = [](double& sum, const torch::Tensor& value) {
+    if (value.defined()) sum += value.item<double>();
+  };
+  add(state.sums.loss, losses.total);
+  add(state.sums.projection_m, losses.projection);
+  add(state.sums.correspondence, losses.correspondence);
+  add(state.sums.depth, losses.depth);
+  add(state.sums.train_position_m, losses.position_m);
+  ++state.sum_steps;
+}
+
+// Means of the losses since the last validation.
+CurvePoint TakeMeans(TrainingState& state) {
+  CurvePoint mean = std::exchange(state.sums, {});
+  const auto count =
+      static_cast<double>(std::max<std::int64_t>(1, std::exchange(state.sum_steps, 0)));
+  for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth,
+                        &mean.train_position_m}) {
+    *value /= count;
+  }
+  return mean;
+}
+
+// What is optimised: the network, and the loss where that has parameters of its own.
+class Trained : public torch::nn::Module {
+ public:
+  Trained(std::shared_ptr<PairNetwork> network, std::shared_ptr<TrainingLoss> loss) {
+    register_module("network", std::move(network));
+    register_module("loss", std::move(loss));
+  }
 };
 
 class Trainer {
@@ -61,31 +71,80 @@ class Trainer {
         watch_(watch),
         progress_(progress),
         per_epoch_(Loader::BatchesPerEpoch(data.train, options.batch)),
-        total_steps_(per_epoch_ * options.epochs) {
+        total_steps_(per_epoch_ * options.epochs),
+        device_(torch::cuda::is_available() ? torch::kCUDA : torch::kCPU),
+        ranks_(options.ranks) {
     torch::manual_seed(SubSeed(options.seed, 0));
     network_ = MakeNetwork(options.network, data.train.camera);
     if (!options.start.empty()) CopyWeights(options.start, options.network, *network_);
+    Divisor divisor;
+    if (ranks_.ranks() > 1) {
+      divisor = [this](const torch::Tensor& weights) {
+        torch::Tensor mean = weights.detach().clone();
+        ranks_.Mean(mean);
+        return mean;
+      };
+    }
+    loss_ = std::make_shared<TrainingLoss>(data.train.camera, options.loss, divisor);
+    trained_ = std::make_shared<Trained>(network_, loss_);
+    trained_->to(device_);
     adam_ =
-        std::make_unique<Adam>(*network_, AdamOptions{.weight_decay = options.weight_decay,
+        std::make_unique<Adam>(*trained_, AdamOptions{.weight_decay = options.weight_decay,
                                                       .gradient_limit = options.gradient_limit});
   }
 
   TrainResult Run() {
     if (options_.resume) Resume();
-    const TrainingLoss loss(data_.train.camera, options_.loss);
-    Loader loader(data_.train, {options_.network, options_.batch, options_.augment, options_.seed},
+    Loader loader(data_.train,
+                  {options_.network, options_.batch, options_.augment, options_.seed, ranks_.rank(),
+                   ranks_.ranks()},
                   state_.step);
     const std::int64_t every = options_.validate_steps > 0 ? options_.validate_steps : per_epoch_;
     if (!options_.start.empty() && state_.step == 0) Validate();  // it may be the best already
-    while (!Finished()) {
-      Step(loader.Next(), loss);
-      if (state_.step % every == 0) Validate();
+    try {
+      while (AllGoOn()) {
+        Step(loader.Next().To(device_));
+        if (state_.step % every == 0) Validate();
+      }
+    } catch (const Error&) {
+      // A rank was lost, or the numbers: what was learnt before that step is kept.
+      if (First() && ranks_.ranks() > 1) Keep();
+      throw;
     }
+    if (!First()) return {{}, state_.step, Seconds(), {}};
     if (state_.curve.empty() || state_.curve.back().step != state_.step) Validate();
     return Finish();
   }
 
  private:
+  bool First() const { return ranks_.rank() == 0; }
+
+  // Whether there is another step to make, and at what rate: the first rank says, for time passes
+  // differently elsewhere. Anyone may want to stop.
+  bool AllGoOn() {
+    const bool stop = options_.stop && options_.stop();
+    const torch::Tensor said =
+        torch::tensor({stop ? 1.0 : 0.0, First() && Finished() ? 1.0 : 0.0,
+                       First() ? LearningRate() : 0.0, static_cast<double>(state_.step)},
+                      torch::kDouble);
+    ranks_.Sum(said);
+    const auto* values = said.data_ptr<double>();
+    Require(values[3] == static_cast<double>(state_.step * ranks_.ranks()), "ranks",
+            "begin at different steps", "give all of them the same checkpoint");
+    rate_ = values[2];
+    if (values[1] > 0) return false;
+    if (values[0] > 0) {
+      if (First()) Keep();
+      throw Error("train",
+                  fmt::format("stopped at step {}, which is kept in '{}'", state_.step,
+                              CheckpointPath(options_).string()),
+                  "go on with --resume");
+    }
+    return true;
+  }
+
+  void Keep() const { WriteCheckpoint(CheckpointPath(options_), Saved(), *trained_, *adam_); }
+
   double Seconds() const { return state_.seconds_before + watch_.Seconds(); }
 
   // How much of the training is done, by steps or by time, whichever is further.
@@ -121,21 +180,56 @@ class Trainer {
     return options_.warm_up_steps > 0 ? rate * std::min(1.0, next / options_.warm_up_steps) : rate;
   }
 
-  void Step(const Batch& batch, const TrainingLoss& loss) {
+  void Step(const Batch& batch) {
     const Stopwatch step;
     // Dropout's noise follows from the step, so that a resumed training sees the same.
-    torch::manual_seed(SubSeed(SubSeed(options_.seed, 3), static_cast<std::uint64_t>(state_.step)));
+    const auto noise = SubSeed(SubSeed(options_.seed, 3), static_cast<std::uint64_t>(state_.step));
+    torch::manual_seed(First() ? noise : SubSeed(noise, static_cast<std::uint64_t>(ranks_.rank())));
     network_->train();
-    const Losses losses = loss(network_->forward(batch.live, batch.key), batch);
+    const Losses losses = (*loss_)(network_->forward(batch.live, batch.key), batch);
     losses.total.backward();
-    rate_ = LearningRate();
-    adam_->Step(rate_);
+    if (!losses.total.isfinite().item<bool>()) {  // its gradient may be; all ranks are to see it
+      torch::Tensor& gradient = trained_->parameters().front().mutable_grad();
+      if (gradient.defined()) gradient.fill_(std::numeric_limits<float>::quiet_NaN());
+    }
+    ranks_.MeanGradients(*trained_);
+    const bool good = adam_->Step(rate_);
     ++state_.step;
-    means_.Add(losses);
+    if (good) AddLosses(losses, state_);
+    Guard(good);
     step_seconds_ = step.Seconds();
+    ShowPage();
     Report(progress_, "train", state_.step, ExpectedSteps(),
            fmt::format("loss {:.3f}  valid {:.3f} m", losses.total.item<double>(),
                        state_.curve.empty() ? 0.0 : state_.curve.back().valid_position_m));
+  }
+
+  // A step whose gradient is not finite leaves the weights alone; many in a row are the end.
+  void Guard(bool good) {
+    bad_steps_ = good ? 0 : bad_steps_ + 1;
+    if (good) return;
+    ++state_.skipped;
+    if (bad_steps_ < kBadStepsInARow) return;
+    if (First()) Keep();
+    throw Error("train",
+                fmt::format("{} steps in a row had a loss or a gradient that is not finite; the "
+                            "weights before them are kept in '{}'",
+                            bad_steps_, CheckpointPath(options_).string()),
+                "try a lower learning rate");
+  }
+
+  void ShowPage(bool running = true) {
+    if (!First() || options_.live.empty()) return;
+    if (running && page_.Seconds() < kSecondsBetweenPages && shown_) return;
+    shown_ = true;
+    page_.Restart();
+    WriteLiveCurve(
+        options_.live, state_.curve,
+        fmt::format("{}: step {} of about {}, {:.0f} s{}{}", options_.out.string(), state_.step,
+                    ExpectedSteps(), Seconds(),
+                    state_.skipped > 0 ? fmt::format(", {} steps left out", state_.skipped) : "",
+                    running ? "" : ", done"),
+        running);
   }
 
   std::int64_t ExpectedSteps() const {
@@ -146,8 +240,9 @@ class Trainer {
   }
 
   void Validate() {
+    if (!First()) return;
     const Stopwatch validation;
-    CurvePoint point = means_.Take();
+    CurvePoint point = TakeMeans(state_);
     const PairFigures figures =
         EvaluatePairs(PoseNetwork(Describe({}), network_), data_.valid, data_.quick_valid)
             .Figures();
@@ -165,7 +260,7 @@ class Trainer {
       PoseNetwork(Describe(figures), network_).Save(options_.out);
     }
     WriteCurve(options_.csv, state_.curve);
-    WriteCheckpoint(CheckpointPath(options_), Saved(), *network_, *adam_);
+    Keep();
     validation_seconds_ = validation.Seconds();
   }
 
@@ -196,10 +291,11 @@ class Trainer {
   void Resume() {
     const auto path = CheckpointPath(options_);
     if (!std::filesystem::exists(path)) return;
-    state_ = ReadCheckpoint(path, ToJson(options_), *network_, *adam_);
+    state_ = ReadCheckpoint(path, ToJson(options_), *trained_, *adam_);
   }
 
   TrainResult Finish() {
+    ShowPage(false);
     const ModelInfo best = PoseNetwork::Load(options_.out, options_.threads).info();
     std::filesystem::remove(CheckpointPath(options_));
     return {best, state_.step, Seconds(), state_.curve};
@@ -210,11 +306,17 @@ class Trainer {
   const Stopwatch& watch_;
   const ProgressSink& progress_;
   const std::int64_t per_epoch_, total_steps_;
+  const torch::Device device_;
+  const Ranks ranks_;
   std::shared_ptr<PairNetwork> network_;
+  std::shared_ptr<TrainingLoss> loss_;
+  std::shared_ptr<Trained> trained_;
   std::unique_ptr<Adam> adam_;
   TrainingState state_;
-  LossMeans means_;
   double rate_ = 0, step_seconds_ = 0, validation_seconds_ = 0;
+  int bad_steps_ = 0;
+  bool shown_ = false;
+  Stopwatch page_;  // since the live curve was last written
 };
 
 }  // namespace

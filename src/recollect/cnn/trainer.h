@@ -39,7 +39,14 @@ struct TrainResult {
 //
 // Memory: about 200 kB a frame (see StoredFrame), twice for frames that are both trained on and
 // validated against, and for batch 24 some 2.5 GB (compact) or 7 GB (A).
-// Throws Error as LoadPairs does, for options out of range and for a checkpoint of other options.
+// With several ranks the first writes all files and returns the result, the others the number of
+// steps; the pairs of each step are shared out among them.
+// Steps whose loss or gradient is not finite are left out.
+//
+// Throws Error as LoadPairs does, for options out of range, for a checkpoint of other options,
+// where a file cannot be written (an earlier checkpoint stays whole), and after writing a
+// checkpoint where `options.stop` said so, a rank was lost or many steps in a row had to be left
+// out.
 TrainResult Train(std::span<const Lap> laps, std::span<const Lap> valid,
                   const TrainOptions& options, const ProgressSink& progress = {});
 

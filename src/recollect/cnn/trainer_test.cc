@@ -3,7 +3,13 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <csignal>
+#include <limits>
 
 #include "recollect/cnn/adam.h"
 #include "recollect/cnn/checkpoint.h"
@@ -85,19 +91,58 @@ class TrainerTest : public ::testing::Test {
                  progress);
   }
   void RunUntilPowerCut(const TrainOptions& options) {
-    const auto cut = [](const Progress& progress) {
-      if (progress.stage == "train" && progress.done == 3) throw PowerCut();
-    };
-    EXPECT_THROW(Run(options, cut), PowerCut);
+    EXPECT_THROW(Run(options, AtStep(3, [] { throw PowerCut(); })), PowerCut);
     ASSERT_TRUE(std::filesystem::exists(CheckpointPath(options)));
+  }
+  static ProgressSink AtStep(std::int64_t step, const std::function<void()>& act) {
+    return [=](const Progress& progress) {
+      if (progress.stage == "train" && progress.done == step) act();
+    };
+  }
+  // The message of the error that the training ends with.
+  std::string ErrorOf(const TrainOptions& options, const ProgressSink& progress = {}) {
+    try {
+      Run(options, progress);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  // Every curve and every weight is what the uninterrupted training `expected` has.
+  void ExpectResumesAs(const TrainResult& expected, const std::filesystem::path& model,
+                       TrainOptions options) {
+    options.resume = true;
+    options.stop = {};
+    const TrainResult resumed = Run(options);
+    EXPECT_EQ(resumed.steps, expected.steps);
+    EXPECT_EQ(resumed.model.steps, expected.model.steps);
+    ASSERT_EQ(resumed.curve.size(), expected.curve.size());
+    for (std::size_t i = 0; i < expected.curve.size(); ++i) {
+      EXPECT_EQ(resumed.curve[i].loss, expected.curve[i].loss) << i;
+      EXPECT_EQ(resumed.curve[i].valid_position_m, expected.curve[i].valid_position_m) << i;
+    }
+    const TensorFile one = ReadTensorFile(options.out), other = ReadTensorFile(model);
+    ASSERT_EQ(one.tensors.size(), other.tensors.size());
+    for (std::size_t i = 0; i < one.tensors.size(); ++i) {
+      EXPECT_TRUE(torch::equal(one.tensors[i].second, other.tensors[i].second))
+          << one.tensors[i].first;
+    }
   }
 
   TestStreet street_{{{.length_m = 8}, {.length_m = 8, .lateral_m = 0.5, .seed = 2}}};
 };
 
 TEST_F(TrainerTest, WritesTheBestModelAndItsCurve) {
-  const TrainOptions options = Options("plain");
-  const TrainResult result = Run(options);
+  TrainOptions options = Options("plain");
+  options.live = street_.File("plain.html");
+  std::string while_running;
+  const TrainResult result =
+      Run(options, AtStep(3, [&] { while_running = ReadFile(options.live); }));
+  EXPECT_NE(while_running.find("refresh"), std::string::npos);
+  const std::string page = ReadFile(options.live);
+  EXPECT_EQ(page.find("refresh"), std::string::npos);
+  EXPECT_NE(page.find("<polyline"), std::string::npos);
+  EXPECT_NE(page.find(fmt::format("<tr><td>{}<td>", result.steps)), std::string::npos);
   ASSERT_FALSE(result.curve.empty());
   double best = 1e9;
   for (const CurvePoint& point : result.curve) best = std::min(best, point.valid_position_m);
@@ -118,18 +163,67 @@ TEST_F(TrainerTest, ResumedTrainingIsAsIfItHadNeverStopped) {
   const TrainResult expected = Run(Options("whole"));
   ASSERT_GT(expected.steps, 3);
 
-  TrainOptions broken = Options("broken");
+  const TrainOptions broken = Options("broken");
   RunUntilPowerCut(broken);
-  broken.resume = true;
-  const TrainResult resumed = Run(broken);
-  EXPECT_EQ(resumed.steps, expected.steps);
-  EXPECT_EQ(resumed.model.steps, expected.model.steps);
-  ASSERT_EQ(resumed.curve.size(), expected.curve.size());
-  for (std::size_t i = 0; i < expected.curve.size(); ++i) {
-    EXPECT_EQ(resumed.curve[i].loss, expected.curve[i].loss) << i;
-    EXPECT_EQ(resumed.curve[i].valid_position_m, expected.curve[i].valid_position_m) << i;
-  }
+  ExpectResumesAs(expected, Options("whole").out, broken);
 }
+
+TEST_F(TrainerTest, StopsWhenAskedAndGoesOnFromThere) {
+  const TrainResult expected = Run(Options("whole"));
+  TrainOptions options = Options("stopped");
+  int asked = 0;
+  options.stop = [&] { return ++asked > 3; };  // not where a validation writes a checkpoint
+  EXPECT_NE(ErrorOf(options).find("stopped at step 3"), std::string::npos);
+  ExpectResumesAs(expected, Options("whole").out, options);
+}
+
+TEST_F(TrainerTest, AFullDiskLeavesTheEarlierCheckpointWhole) {
+  const TrainResult expected = Run(Options("whole"));
+  const TrainOptions options = Options("full");
+  rlimit unlimited{};
+  getrlimit(RLIMIT_FSIZE, &unlimited);
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  std::string checkpoint;
+  const std::string error = ErrorOf(options, AtStep(3, [&] {
+                                      checkpoint = ReadFile(CheckpointPath(options));
+                                      const rlimit full{100'000, unlimited.rlim_max};
+                                      setrlimit(RLIMIT_FSIZE, &full);
+                                    }));
+  setrlimit(RLIMIT_FSIZE, &unlimited);
+  std::signal(SIGXFSZ, before);
+  EXPECT_NE(error.find("cannot be written"), std::string::npos) << error;
+  ASSERT_FALSE(checkpoint.empty());
+  EXPECT_EQ(ReadFile(CheckpointPath(options)), checkpoint);
+  ExpectResumesAs(expected, Options("whole").out, options);
+}
+
+TEST_F(TrainerTest, EndsWhereNothingIsFiniteAnyMore) {
+  Run(Options("sane"));
+  TensorFile model = ReadTensorFile(Options("sane").out);
+  for (auto& [name, tensor] : model.tensors) {
+    if (name == "output.2.bias") tensor.fill_(std::numeric_limits<float>::quiet_NaN());
+  }
+  TrainOptions options = Options("broken");
+  options.start = street_.File("broken.start");
+  WriteTensorFile(options.start, model);
+  options.epochs = 100;
+  options.validate_steps = 1000;
+  EXPECT_NE(ErrorOf(options).find("20 steps in a row"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(CheckpointPath(options)));
+}
+
+class LossKinds : public TrainerTest, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(LossKinds, TrainAndResume) {
+  TrainOptions whole = Options("whole"), broken = Options("broken");
+  whole.loss.kind = broken.loss.kind = LossKindFromName(GetParam());
+  const TrainResult expected = Run(whole);
+  EXPECT_LT(expected.curve.back().train_position_m, expected.curve.front().train_position_m);
+  RunUntilPowerCut(broken);
+  ExpectResumesAs(expected, whole.out, broken);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LossKinds, ::testing::Values("reprojection", "l2", "homoscedastic"));
 
 TEST_F(TrainerTest, BeginsWithTheWeightsOfAModel) {
   const TrainResult first = Run(Options("first"));
@@ -164,6 +258,8 @@ TEST_F(TrainerTest, RefusesOptionsOutOfRange) {
   };
   refuses([](TrainOptions& o) { o.epochs = 0; });
   refuses([](TrainOptions& o) { o.batch = -1; });
+  refuses([](TrainOptions& o) { o.ranks.ranks = 3; });  // do not share out a batch of four
+  refuses([](TrainOptions& o) { o.loss.beta = 0; });
   refuses([](TrainOptions& o) { o.learning_rate = 0; });
   refuses([](TrainOptions& o) { o.minutes = -1; });
   refuses([](TrainOptions& o) { o.validation_share = 1; });

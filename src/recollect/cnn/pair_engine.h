@@ -1,0 +1,27 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <span>
+
+namespace recollect::cnn {
+
+// Which of the images given together are compared.
+struct ImagePair {
+  std::int64_t live = 0, key = 0;
+};
+
+// The way forward alone, on the processor, made from a network's weights as they were at the time.
+// May be asked from several threads; they wait for each other.
+class PairEngine {
+ public:
+  virtual ~PairEngine() = default;
+
+  // images [N, 3, H, W] as the network takes them; keyframe_from_live of each pair, [pairs, 3, 4].
+  // What is made of an image alone is made once, however many pairs it is in.
+  virtual torch::Tensor KeyframeFromLive(const torch::Tensor& images,
+                                         std::span<const ImagePair> pairs) = 0;
+};
+
+}  // namespace recollect::cnn

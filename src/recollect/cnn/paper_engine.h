@@ -1,0 +1,40 @@
+#pragma once
+
+#include <mutex>
+#include <vector>
+
+#include "recollect/cnn/convolution_taps.h"
+#include "recollect/cnn/packed_layers.h"
+#include "recollect/cnn/pair_engine.h"
+
+namespace recollect::cnn {
+
+// The paper's network for images of one size. Its last layers, which see one or two cells and hold
+// nine tenths of the weights, are matrix products without what meets only padding: reading the
+// weights is what their time goes into.
+class PaperEngine : public PairEngine {
+ public:
+  // branch, top: PaperNetwork's layers, which must bring the images down to one cell.
+  PaperEngine(torch::nn::Sequential branch, torch::nn::Sequential top, std::int64_t image_rows,
+              std::int64_t image_columns, Precision precision);
+
+  torch::Tensor KeyframeFromLive(const torch::Tensor& images,
+                                 std::span<const ImagePair> pairs) override;
+
+ private:
+  // A layer as a product: the cells it takes of its input, then the product.
+  struct Wide {
+    ConvolutionTaps taps;
+    PackedProduct product;
+  };
+  dnnl::memory Fuse(const dnnl::memory& features, std::span<const ImagePair> pairs) const;
+  const dnnl::memory& Product(Wide& layer, const dnnl::memory& cells, std::int64_t batch) const;
+
+  std::mutex mutex_;
+  dnnl::memory::data_type type_;
+  std::vector<PackedConvolution> branch_, top_;
+  std::vector<Wide> wide_;
+  torch::Tensor last_weight_, last_bias_;  // of the output layer: [rows of wide, 6], [6]
+};
+
+}  // namespace recollect::cnn
