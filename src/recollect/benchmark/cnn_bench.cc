@@ -46,14 +46,22 @@ class PlainNetwork : public cnn::PairNetwork {
   std::shared_ptr<cnn::PaperNetwork> network_;
 };
 
-// Weights whose answers are of the size of a trained network's.
+// Weights whose answers are of the size of a trained network's: some metres, a tenth of a radian.
 std::shared_ptr<cnn::PaperNetwork> NetworkA(std::uint64_t seed) {
   torch::manual_seed(seed);
   auto network = std::make_shared<cnn::PaperNetwork>(NetworkKind::kPaperA);
   const torch::NoGradGuard no_gradients;
+  torch::Tensor last;
   for (auto& parameter : network->parameters()) {
-    if (parameter.dim() == 4 && parameter.size(0) == 6) parameter.normal_(0, 0.002);
+    if (parameter.dim() == 4 && parameter.size(0) == 6) last = parameter;
   }
+  last.normal_(0, 1e-4);
+  network->eval();
+  const torch::Tensor motion =
+      network->ForwardPlain(torch::rand({1, 3, 240, 320}), torch::rand({1, 3, 240, 320})).motion[0];
+  const torch::Tensor turned = motion.slice(1, 0, 3) - torch::eye(3);
+  last.slice(0, 0, 3).mul_(0.1 / turned.norm());
+  last.slice(0, 3, 6).mul_(2.0 / motion.select(1, 3).norm());
   return network;
 }
 
