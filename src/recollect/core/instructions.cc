@@ -17,6 +17,8 @@ bool Runs(Instructions set) {
       return avx512;
     case Instructions::kAvx512Popcount:
       return avx512 && __builtin_cpu_supports("avx512vpopcntdq");
+    case Instructions::kAvx512Vnni:
+      return avx512 && __builtin_cpu_supports("avx512vnni");
     case Instructions::kNeon:
       return false;
   }

@@ -9,7 +9,8 @@ namespace recollect {
 //   kAvx2           AVX2, POPCNT, BMI
 //   kAvx512         AVX-512 F, BW, VL
 //   kAvx512Popcount AVX-512 F, BW, VL, VPOPCNTDQ
-enum class Instructions { kPlain, kAvx2, kAvx512, kAvx512Popcount, kNeon };
+//   kAvx512Vnni     AVX-512 F, BW, VL, VNNI
+enum class Instructions { kPlain, kAvx2, kAvx512, kAvx512Popcount, kAvx512Vnni, kNeon };
 
 // Whether this machine, and its operating system, runs them.
 bool Runs(Instructions set);

@@ -118,13 +118,13 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
   const std::vector<int> proposals = Propose(recollection);
   std::optional<matching::Verified> verified;
   if (expected) {
-    verified =
-        matching::VerifyExpected(frames_, live, expected->world_from_camera, options_.verify);
+    verified = matching::VerifyExpected(frames_, live, expected->world_from_camera, options_.verify,
+                                        &pool_);
   }
   bool sure = verified && matching::IsSure(*verified, options_.sure) &&
               IsNear(*expected, verified->world_from_camera);
   if (!sure) {
-    verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify);
+    verified = matching::VerifyPlaces(frames_, live, proposals, options_.verify, &pool_);
     sure = verified && matching::IsSure(*verified, options_.sure);
   }
   answer.by_geometry = verified;
@@ -221,7 +221,7 @@ matching::PosePrior Localizer::NetworkPrior(const SE3& world_from_camera) const 
 std::optional<matching::Verified> Localizer::Verify(const cv::Mat& image,
                                                     std::span<const int> proposals) {
   return matching::VerifyPlaces(frames_, matching::FindFeatures(matching::ToGray(image)), proposals,
-                                options_.verify);
+                                options_.verify, &pool_);
 }
 
 wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& name) {

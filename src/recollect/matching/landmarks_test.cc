@@ -6,18 +6,12 @@
 #include "recollect/core/random.h"
 #include "recollect/matching/build_landmarks.h"
 #include "recollect/matching/features.h"
-#include "recollect/matching/match.h"
+#include "recollect/matching/test_descriptors.h"
 
 namespace recollect::matching {
 namespace {
 
 const PinholeCamera kCamera{640, 480, 490, 500, 320, 240};
-
-std::vector<std::int8_t> Descriptors(int count, Random& random) {
-  std::vector<std::int8_t> all(static_cast<std::size_t>(count * kDescriptorBytes));
-  for (auto& value : all) value = static_cast<std::int8_t>(random.Index(128));
-  return all;
-}
 
 Landmarks Some(int count) {
   Random random(7);
@@ -77,40 +71,6 @@ TEST(Landmarks, CovarianceIsThatOfPixelAndDepth) {
     sum += (p - l.p_keyframe) * (p - l.p_keyframe).transpose() / kDraws;
   }
   EXPECT_LT((sum - l.Covariance(kCamera)).norm(), 0.05 * sum.norm());
-}
-
-TEST(MatchDescriptors, FindsTwinsAndDropsTheDoubtful) {
-  Random random(9);
-  const auto mapped = Descriptors(40, random);
-  auto live = Descriptors(33, random);
-  const auto copy = [&](int to, int from) {
-    std::copy_n(mapped.begin() + from * kDescriptorBytes, kDescriptorBytes,
-                live.begin() + to * kDescriptorBytes);
-  };
-  copy(3, 20);
-  copy(30, 7);
-  const auto matches = MatchDescriptors(live.data(), 33, mapped.data(), 40, {0.6});
-  ASSERT_EQ(matches.size(), 2u);
-  EXPECT_EQ(matches[0].live, 3);
-  EXPECT_EQ(matches[0].mapped, 20);
-  EXPECT_EQ(matches[1].live, 30);
-  EXPECT_EQ(matches[1].mapped, 7);
-  // Two live features that look the same: only one may have the landmark.
-  copy(4, 20);
-  EXPECT_EQ(MatchDescriptors(live.data(), 33, mapped.data(), 40, {0.6}).size(), 2u);
-  // Two landmarks that look the same: neither is to be trusted.
-  auto doubled = mapped;
-  std::copy_n(mapped.begin() + 20 * kDescriptorBytes, kDescriptorBytes, doubled.begin());
-  EXPECT_EQ(MatchDescriptors(live.data(), 33, doubled.data(), 40, {0.6}).size(), 1u);
-  EXPECT_TRUE(MatchDescriptors(live.data(), 33, nullptr, 0).empty());
-}
-
-TEST(Likeness, IsTheInnerProduct) {
-  Random random(10);
-  const auto d = Descriptors(2, random);
-  int sum = 0;
-  for (std::size_t k = 0; k < kDescriptorBytes; ++k) sum += d[k] * d[k + kDescriptorBytes];
-  EXPECT_EQ(Likeness(d.data(), d.data() + kDescriptorBytes), sum);
 }
 
 class Triangulation : public ::testing::Test {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "recollect/matching/features.h"
+#include "recollect/matching/kernel.h"
 
 // The compiler makes one variant an instruction set, and the loader chooses: before sanitizers are
 // ready, which therefore watch the plain one.
@@ -17,19 +18,36 @@
 namespace recollect::matching {
 namespace {
 
-// products[j] = inner product of `one` with the j-th of `many`.
+constexpr int kFar = 1 << 29;  // beyond all squared distances; twice that is still a number
+
+// Of squared distances of one live descriptor from mapped ones: the two least. `nearest` keeps each
+// mapped one's least. `count` is a multiple of the sixteen lanes that the loop is cut into.
 RECOLLECT_VARIANTS
-void Products(const std::int8_t* one, const std::int8_t* many, int count, int* products) {
-  for (int j = 0; j < count; ++j) {
-    const std::int8_t* other = many + j * kDescriptorBytes;
-    int sum = 0;
-    for (int k = 0; k < kDescriptorBytes; ++k) sum += one[k] * other[k];
-    products[j] = sum;
+void Scan(const int* products, const int* norms, int own, int count, int* distances, int* nearest,
+          int& best, int& second) {
+  constexpr int kLanes = PackedDescriptors::kSide;
+  int bests[kLanes], seconds[kLanes];
+  std::fill_n(bests, kLanes, kFar);
+  std::fill_n(seconds, kLanes, kFar);
+  for (int j = 0; j < count; j += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int d = own + norms[j + lane] - 2 * products[j + lane];
+      distances[j + lane] = d;
+      nearest[j + lane] = std::min(nearest[j + lane], d);
+      seconds[lane] = std::min(seconds[lane], std::max(bests[lane], d));
+      bests[lane] = std::min(bests[lane], d);
+    }
+  }
+  best = second = kFar;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    second = std::min({second, std::max(best, bests[lane]), seconds[lane]});
+    best = std::min(best, bests[lane]);
   }
 }
 
-std::vector<int> SquaredNorms(const std::int8_t* descriptors, int count) {
-  std::vector<int> norms(static_cast<std::size_t>(count));
+// Padded to `size` with what is far from everything.
+std::vector<int> SquaredNorms(const std::int8_t* descriptors, int count, int size) {
+  std::vector<int> norms(static_cast<std::size_t>(size), kFar);
   for (int i = 0; i < count; ++i) {
     const std::int8_t* d = descriptors + i * kDescriptorBytes;
     norms[static_cast<std::size_t>(i)] = Likeness(d, d);
@@ -39,10 +57,11 @@ std::vector<int> SquaredNorms(const std::int8_t* descriptors, int count) {
 
 }  // namespace
 
+RECOLLECT_VARIANTS
 int Likeness(const std::int8_t* a, const std::int8_t* b) {
-  int product = 0;
-  Products(a, b, 1, &product);
-  return product;
+  int sum = 0;
+  for (int k = 0; k < kDescriptorBytes; ++k) sum += a[k] * b[k];
+  return sum;
 }
 
 double Distance(int likeness, int norm2_a, int norm2_b) {
@@ -52,35 +71,41 @@ double Distance(int likeness, int norm2_a, int norm2_b) {
 std::vector<Match> MatchDescriptors(const std::int8_t* live, int live_count,
                                     const std::int8_t* mapped, int mapped_count,
                                     const MatchOptions& options) {
-  const auto mapped_size = static_cast<std::size_t>(mapped_count);
-  const std::vector<int> live_norms = SquaredNorms(live, live_count);
-  const std::vector<int> mapped_norms = SquaredNorms(mapped, mapped_count);
-  // Squared distances: least over all live features, by mapped one, and whose it was.
-  std::vector<int> products(mapped_size), nearest(mapped_size, 1 << 30), whose(mapped_size, -1);
+  if (mapped_count == 0) return {};
+  const Kernel& kernel = *Kernels().front();
+  const PackedDescriptors packed(mapped, mapped_count);
+  const int padded = packed.padded();
+  const auto size = static_cast<std::size_t>(padded);
+  const std::vector<int> norms = SquaredNorms(mapped, mapped_count, padded);
+  std::vector<int> products(size * static_cast<std::size_t>(kernel.rows)), distances(size),
+      nearest(size, kFar);
   std::vector<Match> matches;
-  for (int i = 0; i < live_count; ++i) {
-    Products(live + i * kDescriptorBytes, mapped, mapped_count, products.data());
-    int best = 1 << 30, second = 1 << 30, best_j = -1;
-    for (int j = 0; j < mapped_count; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const int d = live_norms[static_cast<std::size_t>(i)] + mapped_norms[at] - 2 * products[at];
-      if (d < best) {
-        second = best;
-        best = d;
-        best_j = j;
-      } else if (d < second) {
-        second = d;
-      }
-      if (d < nearest[at]) {
-        nearest[at] = d;
-        whose[at] = i;
-      }
+  std::vector<int> squared;  // distance of each match
+  for (int first = 0; first < live_count; first += kernel.rows) {
+    const int rows = std::min(kernel.rows, live_count - first);
+    kernel.products(live + first * kDescriptorBytes, rows, packed.data(), packed.groups(),
+                    products.data());
+    for (int r = 0; r < rows; ++r) {
+      const int* own_products = products.data() + r * padded;
+      const std::int8_t* own = live + (first + r) * kDescriptorBytes;
+      int best, second;
+      Scan(own_products, norms.data(), Likeness(own, own), padded, distances.data(), nearest.data(),
+           best, second);
+      if (best >= options.ratio * options.ratio * second) continue;
+      const auto at = std::find(distances.begin(), distances.end(), best) - distances.begin();
+      matches.push_back({first + r, static_cast<int>(at), own_products[at]});
+      squared.push_back(best);
     }
-    if (best_j < 0 || best >= options.ratio * options.ratio * second) continue;
-    matches.push_back({i, best_j, products[static_cast<std::size_t>(best_j)]});
   }
-  std::erase_if(
-      matches, [&](const Match& m) { return whose[static_cast<std::size_t>(m.mapped)] != m.live; });
+  // Each other's most alike; of equals, the first.
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    int& least = nearest[static_cast<std::size_t>(matches[i].mapped)];
+    if (squared[i] != least) continue;
+    least = -1;
+    matches[kept++] = matches[i];
+  }
+  matches.resize(kept);
   return matches;
 }
 

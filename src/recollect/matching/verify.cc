@@ -41,40 +41,60 @@ const SE3& PoseOf(const MappedFrames& map, int key) {
   return map.world_from_camera[static_cast<std::size_t>(key)];
 }
 
-// The pose that most matches with the key frames around `key` agree on; of the matches near to
-// where `expected` sees them, where it is given.
-Hypothesis Propose(const MappedFrames& map, const Features& live, int key,
-                   const VerifyOptions& options, const SE3* expected = nullptr) {
-  const SE3& world_from_place = PoseOf(map, key);
-  const SE3 place_from_world = world_from_place.Inverse();
+// Matches of the live image with a place's landmarks, these in the camera of the place's key frame.
+struct PlaceMatches {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> pixels;
+  std::vector<int> features;  // of the live image: of each point
+  std::vector<int> matched;   // and of all matches, far ones as well
+  void Append(const PlaceMatches& more) {
+    points.insert(points.end(), more.points.begin(), more.points.end());
+    pixels.insert(pixels.end(), more.pixels.begin(), more.pixels.end());
+    features.insert(features.end(), more.features.begin(), more.features.end());
+    matched.insert(matched.end(), more.matched.begin(), more.matched.end());
+  }
+};
+
+// With the landmarks of one key frame; where `expected` is given, points are those only that it
+// sees near to their match.
+PlaceMatches MatchKeyFrame(const MappedFrames& map, const Features& live, int place, int key,
+                           const VerifyOptions& options, const SE3* expected) {
+  const SE3 place_from_key = PoseOf(map, place).Inverse() * PoseOf(map, key);
   const SE3 expected_from_place =
-      expected != nullptr ? expected->Inverse() * world_from_place : SE3();
+      expected != nullptr ? expected->Inverse() * PoseOf(map, place) : SE3();
   const auto far = [&](const Eigen::Vector3d& p_place, const Eigen::Vector2d& pixel) {
     if (expected == nullptr) return false;
     const Eigen::Vector3d p = expected_from_place * p_place;
     return p.z() <= 0 || (map.camera.Project(p) - pixel).norm() > options.expected_px;
   };
-  std::vector<cv::Point3d> points;
-  std::vector<cv::Point2d> pixels;
-  std::vector<int> features, matched;  // of the live image: of each point, of each match
-  for (const int near : Near(map, world_from_place, options.pool_m, options.pool)) {
-    const Landmarks landmarks = map.landmarks(near);
-    const SE3 place_from_key = place_from_world * PoseOf(map, near);
-    for (const Match& m :
-         MatchDescriptors(live.descriptors.data(), live.size(), landmarks.descriptors.data(),
-                          landmarks.size(), options.match)) {
-      const Eigen::Vector3d p =
-          place_from_key * landmarks.points[static_cast<std::size_t>(m.mapped)].p_keyframe;
-      const Eigen::Vector2d& pixel = live.pixels[static_cast<std::size_t>(m.live)];
-      matched.push_back(m.live);
-      if (far(p, pixel)) continue;
-      points.emplace_back(p.x(), p.y(), p.z());
-      pixels.emplace_back(pixel.x(), pixel.y());
-      features.push_back(m.live);
-    }
+  PlaceMatches result;
+  const Landmarks landmarks = map.landmarks(key);
+  for (const Match& m :
+       MatchDescriptors(live.descriptors.data(), live.size(), landmarks.descriptors.data(),
+                        landmarks.size(), options.match)) {
+    const Eigen::Vector3d p =
+        place_from_key * landmarks.points[static_cast<std::size_t>(m.mapped)].p_keyframe;
+    const Eigen::Vector2d& pixel = live.pixels[static_cast<std::size_t>(m.live)];
+    result.matched.push_back(m.live);
+    if (far(p, pixel)) continue;
+    result.points.emplace_back(p.x(), p.y(), p.z());
+    result.pixels.emplace_back(pixel.x(), pixel.y());
+    result.features.push_back(m.live);
   }
-  Hypothesis result{world_from_place, key, 0};
-  if (static_cast<int>(points.size()) < options.min_matches) return result;
+  return result;
+}
+
+int CountDistinct(std::vector<int> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  return static_cast<int>(std::unique(numbers.begin(), numbers.end()) - numbers.begin());
+}
+
+// The pose that most matches of a place agree on.
+Hypothesis Agree(const MappedFrames& map, int place, const PlaceMatches& matches,
+                 const VerifyOptions& options) {
+  const SE3& world_from_place = PoseOf(map, place);
+  Hypothesis result{world_from_place, place, 0};
+  if (static_cast<int>(matches.points.size()) < options.min_matches) return result;
   const PinholeCamera& c = map.camera;
   cv::Mat k = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
   cv::UsacParams usac;
@@ -83,27 +103,57 @@ Hypothesis Propose(const MappedFrames& map, const Features& live, int key,
   usac.score = cv::SCORE_METHOD_MAGSAC;
   usac.threshold = options.ransac_px;
   cv::Mat rotation_vector, translation, inliers;
-  if (!cv::solvePnPRansac(points, pixels, k, cv::noArray(), rotation_vector, translation, inliers,
-                          usac)) {
+  if (!cv::solvePnPRansac(matches.points, matches.pixels, k, cv::noArray(), rotation_vector,
+                          translation, inliers, usac)) {
     return result;
   }
   std::vector<int> agreeing;
   for (int i = 0; i < inliers.rows; ++i) {
-    agreeing.push_back(features[static_cast<std::size_t>(inliers.at<int>(i))]);
+    agreeing.push_back(matches.features[static_cast<std::size_t>(inliers.at<int>(i))]);
   }
-  std::sort(agreeing.begin(), agreeing.end());
-  agreeing.erase(std::unique(agreeing.begin(), agreeing.end()), agreeing.end());
-  result.support = static_cast<int>(agreeing.size());
-  std::sort(matched.begin(), matched.end());
-  const auto count = std::unique(matched.begin(), matched.end()) - matched.begin();
-  result.share = static_cast<double>(agreeing.size()) / static_cast<double>(count);
   const Eigen::Vector3d w(rotation_vector.at<double>(0), rotation_vector.at<double>(1),
                           rotation_vector.at<double>(2));
   const Eigen::Vector3d t(translation.at<double>(0), translation.at<double>(1),
                           translation.at<double>(2));
-  if (!w.allFinite() || !t.allFinite()) return {world_from_place, key, 0};
+  if (!w.allFinite() || !t.allFinite()) return result;
+  result.support = CountDistinct(agreeing);
+  result.share = static_cast<double>(result.support) / CountDistinct(matches.matched);
   result.world_from_camera = world_from_place * SE3::FromRotationVector(w, t).Inverse();
   return result;
+}
+
+// Calls body(i) for all i below count, on the pool's threads where there is one.
+template <typename Body>
+void ForEach(ThreadPool* pool, std::size_t count, const Body& body) {
+  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) body(static_cast<std::size_t>(i));
+  };
+  const auto all = static_cast<std::int64_t>(count);
+  if (pool == nullptr) return chunk(0, all);
+  pool->For(all, 1, chunk);
+}
+
+// A hypothesis a place, from its key frame and those around it.
+std::vector<Hypothesis> Propose(const MappedFrames& map, const Features& live,
+                                std::span<const int> places, const VerifyOptions& options,
+                                ThreadPool* pool, const SE3* expected = nullptr) {
+  std::vector<std::pair<std::size_t, int>> pairs;  // place and key frame
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    for (const int key : Near(map, PoseOf(map, places[place]), options.pool_m, options.pool)) {
+      pairs.emplace_back(place, key);
+    }
+  }
+  std::vector<PlaceMatches> parts(pairs.size()), matches(places.size());
+  ForEach(pool, pairs.size(), [&](std::size_t i) {
+    const auto [place, key] = pairs[i];
+    parts[i] = MatchKeyFrame(map, live, places[place], key, options, expected);
+  });
+  for (std::size_t i = 0; i < pairs.size(); ++i) matches[pairs[i].first].Append(parts[i]);
+  std::vector<Hypothesis> hypotheses(places.size());
+  ForEach(pool, places.size(), [&](std::size_t place) {
+    hypotheses[place] = Agree(map, places[place], matches[place], options);
+  });
+  return hypotheses;
 }
 
 // One key frame a place, in the order proposed.
@@ -137,17 +187,18 @@ std::optional<Verified> Settle(const MappedFrames& map, const Features& live,
 }  // namespace
 
 std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& live,
-                                       const SE3& expected, const VerifyOptions& options) {
+                                       const SE3& expected, const VerifyOptions& options,
+                                       ThreadPool* pool) {
   const std::vector<int> nearest = Near(map, expected, options.expected_m, 1);
   if (nearest.empty()) return std::nullopt;
-  return Settle(map, live, Propose(map, live, nearest.front(), options, &expected), options);
+  return Settle(map, live, Propose(map, live, nearest, options, pool, &expected).front(), options);
 }
 
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
-                                     std::span<const int> proposals, const VerifyOptions& options) {
+                                     std::span<const int> proposals, const VerifyOptions& options,
+                                     ThreadPool* pool) {
   Hypothesis best, rival;
-  for (const int key : Places(map, proposals, options)) {
-    Hypothesis one = Propose(map, live, key, options);
+  for (Hypothesis& one : Propose(map, live, Places(map, proposals, options), options, pool)) {
     if (one.support > best.support) std::swap(one, best);
     if (one.support > rival.support) rival = one;
   }

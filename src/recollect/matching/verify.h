@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "recollect/core/parallel.h"
 #include "recollect/matching/features.h"
 #include "recollect/matching/landmarks.h"
 #include "recollect/matching/match.h"
@@ -52,16 +53,17 @@ struct Verified {
 // Looks at the proposed key frames, most likely first, place by place: matches the live image with
 // the landmarks there, finds the pose that most matches agree on (P3P in MAGSAC, Barath et al.
 // 2020), and refines the best supported one over all key frames around it, matched again where the
-// pose predicts them. nullopt where no place has support.
+// pose predicts them. nullopt where no place has support. The pool, if any, changes the time only.
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
                                      std::span<const int> proposals,
-                                     const VerifyOptions& options = {});
+                                     const VerifyOptions& options = {}, ThreadPool* pool = nullptr);
 
 // The same where a pose is expected: at the key frame nearest to it, with those matches only that
 // lie about where it predicts them, which tells apart what repeats along a road.
 std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& live,
                                        const SE3& world_from_camera,
-                                       const VerifyOptions& options = {});
+                                       const VerifyOptions& options = {},
+                                       ThreadPool* pool = nullptr);
 
 // The second half alone: from a pose that is about right, say a network's, which may be held to as
 // far as its covariance says.
