@@ -7,23 +7,9 @@
 #include <tuple>
 
 #include "recollect/core/error.h"
+#include "recollect/matching/describe.h"
 
 namespace recollect::matching {
-namespace {
-
-// Length that a descriptor is scaled to; few bins of unit RootSIFT are above 127 / 320.
-constexpr float kLength = 320;
-
-void Quantise(const float* sift, std::int8_t* out) {
-  float sum = 1e-6f;
-  for (int i = 0; i < kDescriptorBytes; ++i) sum += sift[i];
-  for (int i = 0; i < kDescriptorBytes; ++i) {
-    out[i] =
-        static_cast<std::int8_t>(std::min(127L, std::lround(kLength * std::sqrt(sift[i] / sum))));
-  }
-}
-
-}  // namespace
 
 cv::Mat ToGray(const cv::Mat& image) {
   Require(image.type() == CV_8UC1 || image.type() == CV_8UC3, "features",
@@ -41,7 +27,7 @@ Features FindFeatures(const cv::Mat& gray, const FeatureOptions& options) {
   cv::Mat small;
   cv::resize(gray, small, {}, scale, scale, cv::INTER_AREA);
   if (options.clahe > 0) cv::createCLAHE(options.clahe, {8, 8})->apply(small, small);
-  const auto sift = cv::SIFT::create(0, 3, options.contrast, 10, 1.6);
+  const auto sift = cv::SIFT::create(0, kLayers, options.contrast, 10, kBaseSigma);
   std::vector<cv::KeyPoint> points;
   sift->detect(small, points);
   // One of the copies that SIFT makes of a point with several orientations; here it has none.
@@ -58,21 +44,15 @@ Features FindFeatures(const cv::Mat& gray, const FeatureOptions& options) {
   if (static_cast<int>(points.size()) > options.count) {
     points.resize(static_cast<std::size_t>(options.count));
   }
-  if (points.empty()) return {};
-  for (cv::KeyPoint& point : points) point.angle = 0;
-  cv::Mat descriptors;
-  sift->compute(small, points, descriptors);
 
   Features features;
-  features.descriptors.resize(points.size() * kDescriptorBytes);
+  features.descriptors = Describe(small, points);
   const double sx = static_cast<double>(small.cols) / gray.cols;
   const double sy = static_cast<double>(small.rows) / gray.rows;
   for (std::size_t i = 0; i < points.size(); ++i) {
     features.pixels.emplace_back((points[i].pt.x + 0.5) / sx - 0.5,
                                  (points[i].pt.y + 0.5) / sy - 0.5);
     features.sizes.push_back(static_cast<float>(points[i].size / sx));
-    Quantise(descriptors.ptr<float>(static_cast<int>(i)),
-             features.descriptors.data() + i * kDescriptorBytes);
   }
   return features;
 }

@@ -188,11 +188,5 @@ TEST(IsSure, IsNotOfFewOrClusteredMatches) {
     EXPECT_FALSE(IsSure(bad));
 }
 
-TEST(FindFeatures, RefusesWhatIsNoGrayImage) {
-  EXPECT_THROW(FindFeatures(cv::Mat(240, 320, CV_8UC3)), Error);
-  EXPECT_THROW(FindFeatures(cv::Mat(8, 8, CV_8UC1)), Error);
-  EXPECT_THROW(ToGray(cv::Mat(240, 320, CV_16UC1)), Error);
-}
-
 }  // namespace
 }  // namespace recollect::matching

@@ -1,0 +1,109 @@
+#include "recollect/matching/features.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "recollect/core/error.h"
+#include "recollect/core/random.h"
+#include "recollect/matching/describe.h"
+#include "recollect/matching/match.h"
+
+namespace recollect::matching {
+namespace {
+
+// Blobs of all sizes.
+cv::Mat Blobs(int width, int height, std::uint64_t seed) {
+  Random random(seed);
+  cv::Mat image(height, width, CV_8UC1, cv::Scalar(110));
+  for (int i = 0; i < width * height / 250; ++i) {
+    const cv::Point centre(static_cast<int>(random.Index(width)),
+                           static_cast<int>(random.Index(height)));
+    const int radius = 1 + static_cast<int>(std::exp(random.Uniform(0, 3)));
+    cv::ellipse(image, centre, {radius, 1 + radius / 2}, random.Uniform(0, 180), 0, 360,
+                cv::Scalar(random.Uniform(0, 255)), cv::FILLED, cv::LINE_AA);
+  }
+  return image;
+}
+
+std::vector<cv::KeyPoint> Upright(const cv::Mat& image) {
+  std::vector<cv::KeyPoint> points;
+  cv::SIFT::create(0, kLayers, 0.01, 10, kBaseSigma)->detect(image, points);
+  for (cv::KeyPoint& point : points) point.angle = 0;
+  return points;
+}
+
+double Cosine(const std::int8_t* a, const std::int8_t* b) {
+  return Likeness(a, b) / std::sqrt(static_cast<double>(Likeness(a, a)) * Likeness(b, b));
+}
+
+TEST(Describe, IsMuchLikeUprightRootSift) {
+  const cv::Mat image = Blobs(320, 240, 5);
+  std::vector<cv::KeyPoint> points = Upright(image);
+  ASSERT_GT(points.size(), 100u);
+  const auto ours = Describe(image, points);
+  cv::Mat theirs;
+  cv::SIFT::create()->compute(image, points, theirs);
+  ASSERT_EQ(ours.size(), static_cast<std::size_t>(theirs.rows * kDescriptorBytes));
+  std::vector<double> cosines;
+  for (int i = 0; i < theirs.rows; ++i) {
+    std::int8_t root[kDescriptorBytes];
+    const float* sift = theirs.ptr<float>(i);
+    float sum = 0;
+    for (int k = 0; k < kDescriptorBytes; ++k) sum += sift[k];
+    for (int k = 0; k < kDescriptorBytes; ++k) {
+      root[k] = static_cast<std::int8_t>(std::min(127.0f, 320 * std::sqrt(sift[k] / sum) + 0.5f));
+    }
+    cosines.push_back(Cosine(root, ours.data() + i * kDescriptorBytes));
+  }
+  std::sort(cosines.begin(), cosines.end());
+  EXPECT_GT(cosines[cosines.size() / 2], 0.985);
+  EXPECT_GT(cosines[cosines.size() / 20], 0.95);
+}
+
+TEST(Describe, IsTheSameWhateverTheThreads) {
+  const cv::Mat image = Blobs(320, 240, 6);
+  const std::vector<cv::KeyPoint> points = Upright(image);
+  const auto many = Describe(image, points);
+  const int threads = cv::getNumThreads();
+  cv::setNumThreads(1);
+  const auto one = Describe(image, points);
+  cv::setNumThreads(threads);
+  EXPECT_EQ(one, many);
+}
+
+TEST(FindFeatures, FindsAMovedAndDarkenedImageAgain) {
+  const cv::Mat image = Blobs(640, 480, 7);
+  cv::Mat moved;
+  const cv::Mat by = (cv::Mat_<double>(2, 3) << 1.05, 0, 7.5, 0, 1.05, -4.25);
+  cv::warpAffine(image, moved, by, image.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  moved = moved * 0.6 + 10;
+  const Features a = FindFeatures(image), b = FindFeatures(moved);
+  ASSERT_GT(a.size(), 300);
+  const auto matches =
+      MatchDescriptors(b.descriptors.data(), b.size(), a.descriptors.data(), a.size());
+  int right = 0;
+  for (const Match& m : matches) {
+    const Eigen::Vector2d& from = a.pixels[static_cast<std::size_t>(m.mapped)];
+    const Eigen::Vector2d expected(1.05 * from.x() + 7.5, 1.05 * from.y() - 4.25);
+    right += (b.pixels[static_cast<std::size_t>(m.live)] - expected).norm() < 2 ? 1 : 0;
+  }
+  EXPECT_GT(right, a.size() / 3);
+  EXPECT_GT(right, static_cast<int>(matches.size()) * 9 / 10);
+}
+
+TEST(FindFeatures, OfAnEvenImageAreNone) {
+  EXPECT_EQ(FindFeatures(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90))).size(), 0);
+}
+
+TEST(FindFeatures, RefusesWhatIsNoGrayImage) {
+  EXPECT_THROW(FindFeatures(cv::Mat(240, 320, CV_8UC3)), Error);
+  EXPECT_THROW(FindFeatures(cv::Mat(8, 8, CV_8UC1)), Error);
+  EXPECT_THROW(ToGray(cv::Mat(240, 320, CV_16UC1)), Error);
+}
+
+}  // namespace
+}  // namespace recollect::matching
