@@ -11,6 +11,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/evaluation/report.h"
+#include "recollect/simulation/faults.h"
 
 namespace recollect::app {
 namespace {
@@ -21,6 +22,7 @@ struct Options {
   std::filesystem::path out;
   LapFlags laps;
   EvaluationOptions evaluation;
+  std::string faults = "none";
 };
 
 void Run(const Options& options) {
@@ -30,8 +32,12 @@ void Run(const Options& options) {
   const Map map = Map::Open(options.localizer.map);
   Localizer localizer(map, options.localizer.Network(options.common.threads), pool,
                       options.localizer.Options());
-  const Evaluation evaluation =
-      Evaluate(localizer, laps.front(), options.evaluation, TerminalProgress());
+  EvaluationOptions evaluated = options.evaluation;
+  simulation::FaultyCamera camera(simulation::ParseFaults(options.faults), options.common.seed);
+  if (options.faults != "none") {
+    evaluated.spoil = [&camera](cv::Mat& image) { return camera.Take(image); };
+  }
+  const Evaluation evaluation = Evaluate(localizer, laps.front(), evaluated, TerminalProgress());
   fmt::print("{}", FormatTable(evaluation));
   WriteFigures(options.common, ToFigures(evaluation));
   if (!options.out.empty()) WriteReport(evaluation, map, options.out);
@@ -57,6 +63,13 @@ void AddEvaluate(CLI::App& app) {
                                           {"key-frames", LeaveOut::kKeyFrames},
                                           {"sources", LeaveOut::kSources}}))
       ->default_str("none");
+  command
+      ->add_option(
+          "--faults", options->faults,
+          "spoil live images as such a camera would: none, all, or kinds with their share\n"
+          "of the images, as in black=0.1,frozen (frozen, black, overexposed, occluded,\n"
+          "blurred)")
+      ->capture_default_str();
   command
       ->add_option("--out", options->out,
                    "folder for the picture, the table, the figures and the trajectories")

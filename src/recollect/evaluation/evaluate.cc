@@ -91,6 +91,21 @@ std::map<std::string, std::pair<double, double>> Latency(const std::vector<LiveF
   return latency;
 }
 
+std::map<std::string, FaultFigures> ByFault(const std::vector<LiveFrame>& frames) {
+  std::map<std::string, FaultFigures> faults;
+  for (const LiveFrame& f : frames) {
+    if (f.fault.empty()) continue;
+    FaultFigures& figures = faults[f.fault];
+    ++figures.frames;
+    if (f.answer.state != State::kLocalised) continue;
+    ++figures.localised;
+    figures.localised_max_m =
+        std::max(figures.localised_max_m,
+                 Compare(f.answer.world_from_camera, f.true_world_from_camera).position_m);
+  }
+  return faults;
+}
+
 }  // namespace
 
 PoseError Compare(const SE3& world_from_estimate, const SE3& world_from_truth) {
@@ -122,8 +137,9 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
   const bool network = localizer.has_network();
   const bool geometry = localizer.relative() != Relative::kCnn;
   for (std::size_t i = 0; i < sampled.size(); ++i) {
-    const cv::Mat image = ReadColour(live.frames[sampled[i]].left);
+    cv::Mat image = ReadColour(live.frames[sampled[i]].left);
     LiveFrame frame;
+    if (options.spoil) frame.fault = options.spoil(image);
     frame.frame = sampled[i];
     frame.time = live.frames[sampled[i]].time;
     frame.true_world_from_camera = live_poses[i];
@@ -213,6 +229,7 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
   result.within_frames = SharesWithin(frames, &LiveFrame::error_frames);
   result.within_labels = SharesWithin(frames, &LiveFrame::error_labels);
   result.latency_ms = Latency(frames);
+  result.faults = ByFault(frames);
   return result;
 }
 

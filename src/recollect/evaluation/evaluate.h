@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +22,8 @@ struct PoseError {
 };
 
 // One way to say where each image was taken, over the frames of the live lap. The paper's system
-// never stands alone: beside it, from the same frames,
+// never stands alone: beside it, from the same frames (the recollected key frame is the committee's
+// or, where the localizer follows a drive, the one that the filter believes in most),
 //   system      WNN + CNN: the recollected key frame and the regressed pose to it
 //   retrieval   the recollected key frame's pose as it is
 //   oracle      the nearest key frame's pose as it is, which no system is told
@@ -47,6 +50,7 @@ struct LiveFrame {
   int nearest_key_frame = 0;  // the oracle's
   Localization answer;
   std::optional<PoseError> system, oracle_cnn, pnp_oracle;  // see Row; none: it was not asked
+  std::string fault;     // what EvaluationOptions::spoil did to the image; empty: there is none
   int error_frames = 0;  // |frames| between this one and that nearest to the recollected key frame
   int error_labels = 0;  // |places| between this one's and the recollected key frame's
 };
@@ -73,6 +77,15 @@ struct EvaluationOptions {
   int every = 1;                // and of what is left each so many-th is localised
   double good_retrieval_m = 5;  // see Evaluation::rows_good_retrieval
   LeaveOut leave_out = LeaveOut::kNone;
+  // Called on each live image, in order, before anything looks at it: may spoil it, and names what
+  // it did. Empty: images are left as they are.
+  std::function<std::string(cv::Mat& image)> spoil;
+};
+
+// What became of the images of one fault.
+struct FaultFigures {
+  int frames = 0, localised = 0;
+  double localised_max_m = 0;  // the worst of the localised
 };
 
 struct Evaluation {
@@ -85,7 +98,8 @@ struct Evaluation {
   // Maximum Allowed Error -> share of frames whose place is right within it, in both readings of
   // the paper: counted in live frames, and in the map's places (key frames of its first lap).
   std::map<int, double> within_frames, within_labels;
-  std::optional<Trust> trust;  // where geometry took part
+  std::optional<Trust> trust;                  // where geometry took part
+  std::map<std::string, FaultFigures> faults;  // by name; empty where images were left as they are
   // Step -> p50, p99 in milliseconds.
   std::map<std::string, std::pair<double, double>> latency_ms;
 };

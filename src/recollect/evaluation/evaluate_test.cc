@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
@@ -162,6 +163,35 @@ TEST_F(EvaluateTest, GeometryNeedsNoNetworkAndKnowsWhenItIsRight) {
   EXPECT_THROW(Localizer(plain, std::nullopt, pool_, wanted), Error);
   wanted.relative = Relative::kCnn;
   EXPECT_THROW(Localizer(map, std::nullopt, pool_, wanted), Error);
+}
+
+TEST_F(EvaluateTest, NothingIsKnownFromACameraThatHangs) {
+  MapOptions options;
+  options.geometry = matching::LandmarkSource();
+  CreateMap(folder_ / "g.map", mapped_, options, pool_);
+  const Map map = Map::Open(folder_ / "g.map");
+  for (const bool drive : {true, false}) {
+    LocalizerOptions wanted;
+    if (drive) wanted.sequence.emplace();
+    Localizer localizer(map, std::nullopt, pool_, wanted);
+    cv::Mat last;
+    EvaluationOptions hanging;
+    hanging.spoil = [&, image = 0](cv::Mat& picture) mutable -> std::string {
+      const bool hangs = ++image % 5 == 0;
+      if (hangs) picture = last.clone();
+      last = picture.clone();
+      return hangs ? "hangs" : "none";
+    };
+    const Evaluation e = Evaluate(localizer, live_, hanging);
+    ASSERT_EQ(e.faults.size(), 2u);
+    EXPECT_EQ(e.faults.at("hangs").frames, 4);
+    EXPECT_EQ(e.faults.at("none").frames, 16);
+    EXPECT_GE(e.faults.at("none").localised, 8);
+    // Images by themselves cannot tell.
+    EXPECT_EQ(e.faults.at("hangs").localised > 0, !drive);
+    EXPECT_EQ(ToFigures(e)["faults"]["hangs"]["frames"], 4);
+    EXPECT_NE(FormatTable(e).find("hangs"), std::string::npos);
+  }
 }
 
 TEST_F(EvaluateTest, LeavesOutWhatTheMapWasMadeOf) {

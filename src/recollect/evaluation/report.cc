@@ -49,6 +49,16 @@ std::string FormatTrust(const Trust& t) {
              100 * t.place_after);
 }
 
+std::string FormatFaults(const std::map<std::string, FaultFigures>& faults) {
+  std::string text = "\n  fault of the camera     images  localised  the worst of these, m\n";
+  for (const auto& [name, f] : faults) {
+    text += fmt::format("    {:<20}{:8}{:11}", name, f.frames, f.localised);
+    text += f.localised > 0 ? fmt::format("{:24.3f}\n", f.localised_max_m)
+                            : "                       -\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string FormatTable(const Evaluation& e) {
@@ -67,6 +77,7 @@ std::string FormatTable(const Evaluation& e) {
   text += "  where the recollected key frame lies within 5 m of the truth:\n";
   for (const Row& row : e.rows_good_retrieval) text += FormatRow("  " + row.name, row);
   if (e.trust) text += FormatTrust(*e.trust);
+  if (!e.faults.empty()) text += FormatFaults(e.faults);
   text += "\n  time an image, ms         p50     p99\n";
   for (const auto& [step, times] : e.latency_ms) {
     text += fmt::format("    {:<18}{:8.1f}{:8.1f}\n", step, times.first, times.second);
@@ -100,6 +111,10 @@ nlohmann::json ToFigures(const Evaluation& e) {
                         {"place_before", t.place_before},
                         {"place_after", t.place_after}};
   }
+  for (const auto& [name, f] : e.faults) {
+    figures["faults"][name] = {
+        {"frames", f.frames}, {"localised", f.localised}, {"localised_max_m", f.localised_max_m}};
+  }
   for (const auto& [step, times] : e.latency_ms) {
     figures["latency_ms"][step] = {{"p50", times.first}, {"p99", times.second}};
   }
@@ -109,7 +124,7 @@ nlohmann::json ToFigures(const Evaluation& e) {
 void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
   std::string csv =
       "frame,time,true_x,true_y,true_z,x,y,z,key_frame,nearest_key_frame,confidence,"
-      "place,state,carried_by,support,spread,position_sigma_m";
+      "place,state,carried_by,support,spread,position_sigma_m,fault";
   for (const Row& row : e.rows) {
     csv += fmt::format(",{0}_position_m", row.name);
     if (row.has_heading) csv += fmt::format(",{0}_heading_deg", row.name);
@@ -124,9 +139,9 @@ void WriteFramesCsv(const Evaluation& e, const std::filesystem::path& file) {
                        f.time, truth.x(), truth.y(), truth.z(), p.x(), p.y(), p.z(),
                        f.answer.key_frame, f.nearest_key_frame, f.answer.confidence);
     const Localization& a = f.answer;
-    csv +=
-        fmt::format(",{},{},{},{},{:.3f},{:.4f}", a.place, Name(a.state), Name(a.carried_by),
-                    a.support, a.spread, std::sqrt(a.covariance.bottomRightCorner<3, 3>().trace()));
+    csv += fmt::format(",{},{},{},{},{:.3f},{:.4f},{}", a.place, Name(a.state), Name(a.carried_by),
+                       a.support, a.spread,
+                       std::sqrt(a.covariance.bottomRightCorner<3, 3>().trace()), f.fault);
     for (std::size_t r = 0; r < e.rows.size(); ++r) {
       const Row& row = e.rows[r];
       const bool answered = next[r] < row.frames.size() && row.frames[next[r]] == i;

@@ -13,7 +13,7 @@ std::string FormatTable(const Evaluation& evaluation);
 
 // The same figures, and which of them: keys places.within_frames.N, places.within_labels.N,
 // position_m.ROW.{mean,median,p75,p95,max}, heading_deg.ROW (not for gps), availability.ROW,
-// states.STATE, trust.* (where geometry took part),
+// states.STATE, trust.* (where geometry took part), faults.NAME.* (where images were spoilt),
 // recollected_within_5m.{share,position_m.ROW}, latency_ms.STEP.{p50,p99}, frames, lap.
 nlohmann::json ToFigures(const Evaluation& evaluation);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <opencv2/core.hpp>
 
 #include "recollect/core/error.h"
 #include "recollect/core/stopwatch.h"
@@ -67,6 +68,7 @@ Localizer::Localizer(const Map& map, std::optional<cnn::PoseNetwork> network, Th
 
 void Localizer::Reset() {
   if (drive_) drive_->Reset();
+  last_image_ = cv::Mat();
 }
 
 Localization Localizer::Localize(const cv::Mat& image, const std::string& name) {
@@ -116,6 +118,7 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
   // Where the drive leads is looked at first, and if that is sure, nowhere else.
   const auto expected = drive_ ? drive_->Expected() : std::nullopt;
   const std::vector<int> proposals = Propose(recollection);
+  if (drive_) answer.key_frame = answer.place = proposals.front();
   std::optional<matching::Verified> verified;
   if (expected) {
     verified = matching::VerifyExpected(frames_, live, expected->world_from_camera, options_.verify,
@@ -140,15 +143,33 @@ void Localizer::RelateByGeometry(const cv::Mat& image, const wnn::Recollection& 
     answer.carried_by = Relative::kPnp;
     answer.state = State::kLost;
   }
+  // What repeats along a road (fences, boards, house fronts) fits in many places: an answer needs a
+  // witness that is not geometry, the drive so far or else the committee.
+  const bool witnessed = expected ? IsNear(*expected, answer.world_from_camera)
+                                  : IsRecollected(recollection, answer.world_from_camera);
+  const bool frozen = drive_ && IsFrozen(image);
+  if (answer.state == State::kLocalised && (!witnessed || frozen)) {
+    answer.state = State::kUncertain;
+  }
   if (drive_) {
-    // One image against the drive: what repeats along a road (fences, lamps) has many places.
-    if (expected && answer.state == State::kLocalised &&
-        !IsNear(*expected, answer.world_from_camera)) {
-      answer.state = State::kUncertain;
-    }
     const bool known = answer.state == State::kLocalised;
     drive_->Learn(known ? std::optional(answer.world_from_camera) : std::nullopt);
   }
+}
+
+// Whether the committee's first place is about there.
+bool Localizer::IsRecollected(const wnn::Recollection& recollection,
+                              const SE3& world_from_camera) const {
+  const SE3& key = frames_.world_from_camera[static_cast<std::size_t>(recollection.winner)];
+  return (key.translation() - world_from_camera.translation()).norm() < options_.verify.place_m;
+}
+
+// Even a camera that stands still sees other noise in each picture.
+bool Localizer::IsFrozen(const cv::Mat& image) {
+  const bool same =
+      image.size() == last_image_.size() && cv::norm(image, last_image_, cv::NORM_INF) == 0;
+  last_image_ = image.clone();
+  return same;
 }
 
 std::vector<int> Localizer::Propose(const wnn::Recollection& recollection) {

@@ -42,9 +42,9 @@ struct StepTimes {
 
 // Where an image was taken.
 struct Localization {
-  SE3 world_from_camera;   // G_L, in the map's world, of the left camera
-  int key_frame = -1;      // the one recollected, a number in the map
-  int place = -1;          // the key frame that stands for the answer's place once it is verified
+  SE3 world_from_camera;  // G_L, in the map's world, of the left camera
+  int key_frame = -1;     // the one recollected, a number in the map; of a drive, by all its images
+  int place = -1;         // the key frame that stands for the answer's place once it is verified
   SE3 keyframe_from_live;  // T(delta): world_from_camera as seen from key_frame
   double confidence = 0;   // the committee's: (votes of the first - of the second) / of the first
   std::vector<wnn::LabelVotes> votes;  // of the key frames with most, at most five
@@ -101,6 +101,9 @@ class Localizer {
   void RelateByNetwork(const cv::Mat& image, Localization& answer);
   void RelateByGeometry(const cv::Mat& image, const wnn::Recollection& recollection,
                         Localization& answer);
+  bool IsRecollected(const wnn::Recollection& recollection, const SE3& world_from_camera) const;
+  // Whether a drive's image is the very one before: the camera hangs, whatever it shows.
+  bool IsFrozen(const cv::Mat& image);
   // Key frames that verification chooses places from, those of the sequence among them.
   std::vector<int> Propose(const wnn::Recollection& recollection);
   // The rest of RelateByGeometry, once verification is not sure.
@@ -118,6 +121,7 @@ class Localizer {
   matching::MappedFrames frames_;
   wnn::Encoder encoder_;
   std::optional<Drive> drive_;
+  cv::Mat last_image_;  // of the drive
 };
 
 }  // namespace recollect

@@ -21,13 +21,20 @@ Eigen::Matrix<double, 2, 3> ProjectionJacobian(const PinholeCamera& camera,
 }
 
 // Inverse covariance of the residual: the pixel's and the point's, seen from the live camera.
-Eigen::Matrix2d Information(const Observation& o, const PinholeCamera& camera,
-                            const SE3& world_from_camera, const Eigen::Vector3d& p) {
-  const Eigen::Matrix<double, 2, 3> j =
-      ProjectionJacobian(camera, p) * world_from_camera.rotation().transpose();
+Eigen::Matrix2d Information(const Observation& o, const Eigen::Matrix<double, 2, 3>& projection,
+                            const Eigen::Matrix3d& camera_from_world) {
+  const Eigen::Matrix<double, 2, 3> j = projection * camera_from_world;
   const Eigen::Matrix2d covariance = j * o.covariance_world * j.transpose() +
                                      o.pixel_sigma * o.pixel_sigma * Eigen::Matrix2d::Identity();
   return covariance.inverse();
+}
+
+// (T Exp(xi))^-1 p_world = Exp(-xi) p = p - rotation x p - translation to first order.
+Eigen::Matrix<double, 2, 6> PoseJacobian(const Eigen::Matrix<double, 2, 3>& projection,
+                                         const Eigen::Vector3d& p) {
+  Eigen::Matrix<double, 2, 6> jacobian;
+  jacobian << projection * Hat(p), -projection;
+  return jacobian;
 }
 
 struct NormalEquations {
@@ -47,14 +54,16 @@ NormalEquations Linearise(std::span<const Observation> observations, const Pinho
       deviations.push_back(std::numeric_limits<double>::infinity());
       continue;
     }
-    Eigen::Matrix<double, 2, 6> jacobian;
-    const Eigen::Vector2d r = Residual(o, camera, pose, &jacobian);
-    const Eigen::Matrix2d information = Information(o, camera, pose, p);
+    const Eigen::Matrix<double, 2, 3> projection = ProjectionJacobian(camera, p);
+    const Eigen::Matrix<double, 2, 6> jacobian = PoseJacobian(projection, p);
+    const Eigen::Vector2d r = camera.Project(p) - o.pixel;
+    const Eigen::Matrix2d information = Information(o, projection, camera_from_world.rotation());
     const double squared = r.dot(information * r);
     deviations.push_back(std::sqrt(squared));
     const double weight = 1 / (1 + squared / (options.robust_scale * options.robust_scale));
-    sum.hessian += weight * jacobian.transpose() * information * jacobian;
-    sum.gradient += weight * jacobian.transpose() * information * r;
+    const Eigen::Matrix<double, 6, 2> weighed = weight * jacobian.transpose() * information;
+    sum.hessian += weighed * jacobian;
+    sum.gradient += weighed * r;
   }
   return sum;
 }
@@ -72,12 +81,7 @@ void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
 Eigen::Vector2d Residual(const Observation& o, const PinholeCamera& camera,
                          const SE3& world_from_camera, Eigen::Matrix<double, 2, 6>* jacobian) {
   const Eigen::Vector3d p = world_from_camera.Inverse() * o.p_world;
-  if (jacobian != nullptr) {
-    // (T Exp(xi))^-1 p_world = Exp(-xi) p = p - rotation x p - translation to first order.
-    Eigen::Matrix<double, 3, 6> moved;
-    moved << Hat(p), -Eigen::Matrix3d::Identity();
-    *jacobian = ProjectionJacobian(camera, p) * moved;
-  }
+  if (jacobian != nullptr) *jacobian = PoseJacobian(ProjectionJacobian(camera, p), p);
   return camera.Project(p) - o.pixel;
 }
 

@@ -172,6 +172,20 @@ std::vector<int> Places(const MappedFrames& map, std::span<const int> proposals,
   return places;
 }
 
+// What repeats along a road, boards and fences and house fronts, fits in many places, and in a
+// wrong one at times a little better: of places about equally well supported the likeliest, which
+// was proposed first.
+std::size_t Choose(const std::vector<Hypothesis>& hypotheses, const VerifyOptions& options) {
+  int most = 0;
+  for (const Hypothesis& one : hypotheses) most = std::max(most, one.support);
+  const auto good = [&](const Hypothesis& one) {
+    return one.support == most ||
+           (one.support >= options.repeat_support && one.support * options.repeat_ratio >= most);
+  };
+  return static_cast<std::size_t>(std::find_if(hypotheses.begin(), hypotheses.end(), good) -
+                                  hypotheses.begin());
+}
+
 // The pose that a hypothesis leads to.
 std::optional<Verified> Settle(const MappedFrames& map, const Features& live,
                                const Hypothesis& hypothesis, const VerifyOptions& options) {
@@ -197,17 +211,18 @@ std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& 
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
                                      std::span<const int> proposals, const VerifyOptions& options,
                                      ThreadPool* pool) {
-  Hypothesis best, rival;
-  for (Hypothesis& one : Propose(map, live, Places(map, proposals, options), options, pool)) {
-    if (one.support > best.support) std::swap(one, best);
-    if (one.support > rival.support) rival = one;
-  }
+  const std::vector<Hypothesis> hypotheses =
+      Propose(map, live, Places(map, proposals, options), options, pool);
+  if (hypotheses.empty()) return std::nullopt;
+  const Hypothesis& best = hypotheses[Choose(hypotheses, options)];
   std::optional<Verified> result = Settle(map, live, best, options);
   if (!result) return std::nullopt;
-  // Two proposals may well lead to one pose.
-  const double apart =
-      (rival.world_from_camera.translation() - result->world_from_camera.translation()).norm();
-  if (apart > options.place_m) result->rival = rival.support;
+  for (const Hypothesis& one : hypotheses) {
+    // Two proposals may well lead to one pose.
+    const double apart =
+        (one.world_from_camera.translation() - result->world_from_camera.translation()).norm();
+    if (apart > options.place_m) result->rival = std::max(result->rival, one.support);
+  }
   return result;
 }
 
@@ -226,7 +241,9 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
     }
     if (static_cast<int>(matches.observations.size()) < options.min_matches) return std::nullopt;
     ShareFeatures(live, matches);
-    refined = RefinePose(matches.observations, map.camera, pose, {}, prior);
+    // Matches are looked for again from the first round's pose: it need not be the very last word.
+    const RefineOptions refine{.max_iterations = radius == options.guided_px[1] ? 15 : 5};
+    refined = RefinePose(matches.observations, map.camera, pose, refine, prior);
     if (!refined) return std::nullopt;
     pose = refined->world_from_camera;
   }

@@ -23,7 +23,11 @@ struct VerifyOptions {
   MatchOptions match;
   double ransac_px = 4;
   int ransac_iterations = 400;
-  int min_matches = 8;                       // fewer are not tried, and fewer inliers prove nothing
+  int min_matches = 8;  // fewer are not tried, and fewer inliers prove nothing
+  // Of places whose support is at least repeat_support, and the best one's is less than
+  // repeat_ratio times that, the likeliest wins.
+  int repeat_support = 25;
+  double repeat_ratio = 2;
   double expected_m = 20, expected_px = 60;  // how far off an expected pose may be
   double guided_px[2] = {16, 7};  // how far from its prediction a landmark is looked for, by round
   double guided_likeness = 0.68;  // cosine between descriptors, at least
@@ -52,8 +56,9 @@ struct Verified {
 
 // Looks at the proposed key frames, most likely first, place by place: matches the live image with
 // the landmarks there, finds the pose that most matches agree on (P3P in MAGSAC, Barath et al.
-// 2020), and refines the best supported one over all key frames around it, matched again where the
-// pose predicts them. nullopt where no place has support. The pool, if any, changes the time only.
+// 2020), and refines the best supported one (of about equal ones the likeliest) over all key frames
+// around it, matched again where the pose predicts them. nullopt where no place has support. The
+// pool, if any, changes the time only.
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
                                      std::span<const int> proposals,
                                      const VerifyOptions& options = {}, ThreadPool* pool = nullptr);

@@ -122,6 +122,42 @@ TEST_F(VerifyTest, FindsThePoseWhereItIsExpected) {
                               SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(500, 0, 0))));
 }
 
+// The street is there once more, far off, and there with all its landmarks, here with three of
+// four.
+TEST_F(VerifyTest, TakesTheLikelierOfPlacesThatLookTheSame) {
+  const Map map = Map::Open(folder_ / "depth.map");
+  MappedFrames frames = FramesOf(map);
+  const auto count = static_cast<int>(frames.world_from_camera.size());
+  const Eigen::Vector3d far(0, 500, 0);
+  for (int key = 0; key < count; ++key) {
+    const SE3 pose = frames.world_from_camera[static_cast<std::size_t>(key)];
+    frames.world_from_camera.emplace_back(pose.rotation(), pose.translation() + far);
+  }
+  frames.landmarks = [of_map = frames.landmarks, count](int key) {
+    const Landmarks all = of_map(key % count);
+    if (key >= count) return all;
+    Landmarks some;
+    for (int i = 0; i < all.size(); ++i) {
+      if (i % 4 == 0) continue;
+      some.points.push_back(all.points[static_cast<std::size_t>(i)]);
+      const std::int8_t* descriptor = all.descriptors.data() + i * kDescriptorBytes;
+      some.descriptors.insert(some.descriptors.end(), descriptor, descriptor + kDescriptorBytes);
+    }
+    return some;
+  };
+  const int here = ByDistance(FramesOf(map), 14).front(), there = here + count;
+  const Eigen::Vector3d truth = live_.WorldFromCamera(14).translation();
+  for (const auto& order : {std::vector{here, there}, std::vector{there, here}}) {
+    const auto found = VerifyPlaces(frames, Live(14), order);
+    ASSERT_TRUE(found);
+    const Eigen::Vector3d expected =
+        truth + (order.front() == there ? far : Eigen::Vector3d(0, 0, 0));
+    EXPECT_LT((found->world_from_camera.translation() - expected).norm(), 0.2);
+    EXPECT_GT(found->rival, 0);
+    EXPECT_FALSE(IsSure(*found));
+  }
+}
+
 TEST_F(VerifyTest, KnowsWhatItDoesNotKnow) {
   const Map map = Map::Open(folder_ / "depth.map");
   const MappedFrames frames = FramesOf(map);

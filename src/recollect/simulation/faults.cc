@@ -20,7 +20,8 @@ constexpr std::array<std::pair<Fault, const char*>, 7> kNames = {
      {Fault::kHalfOccluded, "occluded"},
      {Fault::kBlurred, "blurred"}}};
 constexpr double kUsualShare = 0.02;
-constexpr std::int64_t kRun = 3;  // frames that share a fault
+constexpr double kOverexposure = 3;  // of a picture's values, which are no longer linear in light
+constexpr std::int64_t kRun = 3;     // frames that share a fault
 
 }  // namespace
 
@@ -99,6 +100,20 @@ void Spoil(Fault fault, std::uint64_t seed, cv::Mat& image) {
       }
     }
   }
+}
+
+std::string FaultyCamera::Take(cv::Mat& image) {
+  const std::int64_t frame = frame_++;
+  const Fault fault = FaultOf(plan_, frame, seed_);
+  if (fault == Fault::kFrozen) {
+    image = good_.clone();
+  } else if (fault == Fault::kOverexposed) {
+    image *= kOverexposure;
+  } else {
+    Spoil(fault, SubSeed(seed_, static_cast<std::uint64_t>(frame)), image);
+  }
+  if (fault != Fault::kFrozen) good_ = image.clone();
+  return Name(fault == Fault::kDropped ? Fault::kNone : fault);
 }
 
 }  // namespace recollect::simulation

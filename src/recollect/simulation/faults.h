@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace recollect::simulation {
@@ -33,5 +34,20 @@ Fault FaultOf(const FaultPlan& plan, std::int64_t frame, std::uint64_t seed);
 
 // Spoils a picture (8-bit B, G, R) in place; over-exposure and freezing are the renderer's matter.
 void Spoil(Fault fault, std::uint64_t seed, cv::Mat& image);
+
+// A camera with faults, for live images that are there already. Dropped frames are left as they
+// are: there would be nothing to judge.
+class FaultyCamera {
+ public:
+  FaultyCamera(FaultPlan plan, std::uint64_t seed) : plan_(std::move(plan)), seed_(seed) {}
+  // Spoils the next image (8-bit B, G, R) as the plan says, and names the fault.
+  std::string Take(cv::Mat& image);
+
+ private:
+  FaultPlan plan_;
+  std::uint64_t seed_;
+  std::int64_t frame_ = 0;
+  cv::Mat good_;  // the last picture that was not frozen
+};
 
 }  // namespace recollect::simulation

@@ -88,6 +88,25 @@ TEST(Faults, AreParsedAndDrawn) {
   }
 }
 
+TEST(Faults, OfACameraComeInTheirOrder) {
+  FaultyCamera camera(ParseFaults("frozen=0.4,overexposed=0.3"), 3);
+  std::map<std::string, int> seen;
+  cv::Mat shown;
+  for (int i = 0; i < 60; ++i) {
+    const cv::Mat taken(4, 4, CV_8UC3, cv::Scalar(i, i, i));
+    cv::Mat image = taken.clone();
+    const std::string fault = camera.Take(image);
+    ++seen[fault];
+    if (fault == "frozen") {
+      EXPECT_EQ(cv::norm(image, shown, cv::NORM_INF), 0);  // what was shown before
+    } else {
+      EXPECT_EQ(image.at<cv::Vec3b>(0, 0)[0], fault == "none" ? i : 3 * i);
+    }
+    shown = image.clone();
+  }
+  EXPECT_EQ(seen.size(), 3U);
+}
+
 TEST(Faults, SpoilPictures) {
   const cv::Mat clean(48, 64, CV_8UC3, cv::Scalar(100, 120, 140));
   cv::Mat black = clean.clone(), half = clean.clone();
