@@ -19,7 +19,6 @@ struct AblationFlags {
   std::string live;
   double spacing_m = 5, live_spacing_m = 1, within_m = 5;
   int seeds = 3, stride = 1;
-  bool best = false;  // name the best: recollect tune
 };
 
 // The share of images whose place is found, by one variant with one seed, on each set in turn.
@@ -65,8 +64,6 @@ void Run(const AblationFlags& flags) {
   const std::vector<Variant> variants = AblationVariants();
   nlohmann::json figures = nlohmann::json::array();
   fmt::print("{:<44}{:>10}{:>10}{:>12}\n", "", "right, %", "+-", "bytes/image");
-  std::string best;
-  double most = -1;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     std::vector<double> shares;
     for (int s = 0; s < flags.seeds; ++s) {
@@ -84,15 +81,10 @@ void Run(const AblationFlags& flags) {
                        {"mean", estimate.mean},
                        {"half_width", estimate.half_width},
                        {"bytes_an_image", bytes}});
-    if (estimate.mean > most) {
-      most = estimate.mean;
-      best = variants[v].name;
-    }
     Report(progress, "variants", static_cast<std::int64_t>(v + 1),
            static_cast<std::int64_t>(variants.size()));
   }
-  if (flags.best) fmt::print("best here: {}\n", best);
-  WriteFigures(flags.common, {{"variants", figures}, {"best", best}});
+  WriteFigures(flags.common, {{"variants", figures}});
 }
 
 void AddFlags(CLI::App& command, AblationFlags& flags) {
@@ -129,17 +121,6 @@ void AddExperimentAblation(CLI::App& experiment) {
       ->capture_default_str();
   command->add_option("--within", flags->within_m, "metres to the right place, with --live")
       ->capture_default_str();
-}
-
-void AddTune(CLI::App& app) {
-  const auto flags = std::make_shared<AblationFlags>();
-  flags->best = true;
-  CLI::App* command =
-      AddCommand(app, "tune",
-                 "Choose a configuration of the weightless network on your own mapped laps: each "
-                 "is looked for in the others, a single one with changed light and viewpoint",
-                 flags->common, [flags] { Run(*flags); });
-  AddFlags(*command, *flags);
 }
 
 }  // namespace recollect::app

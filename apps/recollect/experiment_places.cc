@@ -90,7 +90,7 @@ void Run(PlaceFlags flags) {
   LearntPlaces learnt(places, flags.network, pool);
   const wnn::Calibration calibration =
       wnn::Calibrate(places.route, learnt.Trials(pool, {.seed = flags.common.seed}, progress));
-  flags.sequence.votes = calibration.votes;
+  flags.sequence.votes = calibration.sequence;
   const auto answers = AnswerLive(learnt, live.front(), flags.live_spacing_m, flags.sequence,
                                   calibration, pool, progress);
   Require(static_cast<std::size_t>(flags.from) <= answers.size(), "--from",
@@ -123,6 +123,8 @@ void Run(PlaceFlags flags) {
        {{"floor", calibration.votes.floor},
         {"trust", calibration.votes.trust},
         {"sharpness", calibration.votes.sharpness},
+        {"sequence_trust", calibration.sequence.trust},
+        {"sequence_sharpness", calibration.sequence.sharpness},
         {"weights", calibration.weights},
         {"threshold", threshold},
         {"bins", Reliability(answers)}}},

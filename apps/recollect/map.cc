@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "laps.h"
 #include "recollect/core/parallel.h"
+#include "recollect/map/trials.h"
 #include "recollect/matching/mapped.h"
 #include "wnn_flags.h"
 
@@ -19,8 +20,24 @@ struct Options {
   std::filesystem::path map;
   LapFlags laps;
   MapOptions create;
-  bool geometry = true;
+  bool geometry = true, calibrate = true;
 };
+
+// How sure the map's answers are, where there is enough of it to tell.
+void Calibrate(const Options& options, ThreadPool& pool) {
+  if (options.calibrate && Map::Open(options.map).size() >= 3) {
+    CalibrateRecognition(options.map, pool, TerminalProgress());
+  }
+}
+
+nlohmann::json Recognition(const MapDescription& d) {
+  if (!d.recognition) return nullptr;
+  nlohmann::json thresholds = nlohmann::json::object();
+  for (const auto& one : d.recognition->thresholds) {
+    thresholds[fmt::format("{:g}", one.precision)] = one.probability;
+  }
+  return {{"trials", d.recognition->trials}, {"thresholds", thresholds}};
+}
 
 nlohmann::json Describe(const Options& options) {
   const Map map = Map::Open(options.map);
@@ -47,6 +64,7 @@ nlohmann::json Describe(const Options& options) {
            {{"key_frames", with_landmarks},
             {"bytes_a_key_frame", with_landmarks > 0 ? bytes / with_landmarks : 0},
             {"inflation", d.geometry_inflation}}},
+          {"recognition", Recognition(d)},
           {"seed", d.network.seed}};
 }
 
@@ -62,6 +80,10 @@ void Show(const Options& options) {
     fmt::print("  landmarks of {} key frames, {:.1f} kB each; errors {:.2f} times their model\n",
                geometry["key_frames"].get<int>(), geometry["bytes_a_key_frame"].get<double>() / 1e3,
                geometry["inflation"].get<double>());
+  }
+  if (!info["recognition"].is_null()) {
+    fmt::print("  how sure answers are: measured by {} trials\n",
+               info["recognition"]["trials"].get<int>());
   }
   for (const auto& lap : info["laps"]) {
     fmt::print("  {:<24}{:>7} key frames\n", lap["name"].get<std::string>(),
@@ -83,6 +105,7 @@ void AddMap(CLI::App& app) {
     if (create->geometry) create->create.geometry = matching::LandmarkSource();
     CreateMap(create->map, create->laps.Read(), create->create, pool, TerminalProgress());
     if (create->geometry) matching::CalibrateMap(create->map, pool, TerminalProgress());
+    Calibrate(*create, pool);
     Show(*create);
   });
   command->add_option("map", create->map, "file to write")->required()->type_name("MAP");
@@ -94,6 +117,12 @@ void AddMap(CLI::App& app) {
                  "keep landmarks of the key frames: features with depth, from depth images or\n"
                  "from the frames around (at most 60 kB a key frame)")
       ->default_str("true");
+  const auto calibrate_flag = [](CLI::App& to, Options& options) {
+    to.add_flag("--calibrate,!--no-calibrate", options.calibrate,
+                "measure on the mapped laps how sure answers are (see map calibrate)")
+        ->default_str("true");
+  };
+  calibrate_flag(*command, *create);
   AddWnnFlags(*command, create->create.network);
 
   const auto add = std::make_shared<Options>();
@@ -103,10 +132,23 @@ void AddMap(CLI::App& app) {
     if (Map::Open(add->map).HasGeometry()) {
       matching::CalibrateMap(add->map, pool, TerminalProgress());
     }
+    Calibrate(*add, pool);
     Show(*add);
   });
   command->add_option("map", add->map, "file to append to")->required()->type_name("MAP");
   add->laps.AddTo(*command);
+  calibrate_flag(*command, *add);
+
+  const auto again = std::make_shared<Options>();
+  command = AddCommand(*map, "calibrate",
+                       "Measure on the mapped laps - each against the others, a single one with "
+                       "changed light and viewpoint - how sure answers are, and keep it in the map",
+                       again->common, [again] {
+                         ThreadPool pool(again->common.threads);
+                         CalibrateRecognition(again->map, pool, TerminalProgress());
+                         Show(*again);
+                       });
+  command->add_option("map", again->map, "the map")->required()->type_name("MAP");
 
   const auto info = std::make_shared<Options>();
   command = AddCommand(*map, "info", "Say what a map holds", info->common, [info] { Show(*info); });

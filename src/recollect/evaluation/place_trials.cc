@@ -10,6 +10,7 @@
 #include "recollect/dataset/image_folder.h"
 #include "recollect/dataset/sampling.h"
 #include "recollect/wnn/displaced.h"
+#include "recollect/wnn/sabgl.h"
 
 namespace recollect {
 namespace {
@@ -112,7 +113,7 @@ std::vector<PlaceAnswer> AnswerLive(LearntPlaces& learnt, const Lap& live, doubl
         wnn::RecollectImage(learnt.memory, learnt.encoder, View(image), pool);
     std::vector<float> distances;
     if (sequence.filter == wnn::Filter::kSabgl) {
-      distances = wnn::MeanDistances(learnt.memory, learnt.encoder.Encode(View(image)), pool);
+      distances = wnn::DisplacedDistances(learnt.memory, learnt.encoder, View(image), pool);
     }
     const wnn::PlaceBelief filtered = wnn::MostLikely(
         places.route, belief->Update({one.histogram, one.neurons_read, distances, {}}),
@@ -138,9 +139,10 @@ std::vector<Variant> AblationVariants() {
   };
   using Options = wnn::NetworkOptions;
   const auto none = [](Options&) {};
-  const auto displaced = [](Options& o) {
-    o.shift_x = 64;
-    o.shift_y = 32;
+  const auto displaced = [&best](Options& o) {
+    o.shift_x = best.shift_x;
+    o.shift_y = best.shift_y;
+    o.shift_step = best.shift_step;
   };
   add("vibgl", vibgl, none);
   add("vibgl, gray", vibgl, [](Options& o) { o.code = wnn::Code::kGray; });
@@ -172,6 +174,7 @@ std::vector<Variant> AblationVariants() {
     displaced(o);
   });
   add("recollect", best, none);
+  add("recollect, no closer look", best, [](Options& o) { o.closer_step = 0; });
   add("recollect, no displacements", best, [](Options& o) { o.shift_x = o.shift_y = 0; });
   add("recollect, sideways only", best, [](Options& o) { o.shift_y = 0; });
   add("recollect, compare cells", best, [](Options& o) { o.cells = wnn::Cells::kCompare; });

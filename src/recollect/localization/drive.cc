@@ -15,10 +15,16 @@ constexpr double kMoveSigmaM = 1, kTurnSigma = 0.05;
 constexpr int kPatience = 5;    // images without a pose after which the last one leads nowhere
 constexpr double kVotes = 1e6;  // a belief of one, as votes
 
+// Votes are worth what the map says they are, where it does.
+wnn::SequenceOptions WithVotes(const Map& map, wnn::SequenceOptions options) {
+  if (map.description().recognition) options.votes = map.description().recognition->sequence;
+  return options;
+}
+
 }  // namespace
 
 Drive::Drive(const Map& map, const wnn::SequenceOptions& options)
-    : sequence_(wnn::MakeSequence(options, RouteOf(map))) {
+    : sequence_(wnn::MakeSequence(WithVotes(map, options), RouteOf(map))) {
   for (int key = 0; key < map.size(); ++key) {
     world_from_keyframe_.push_back(map.At(key).world_from_camera);
   }
@@ -39,7 +45,7 @@ std::optional<matching::PosePrior> Drive::Expected() const {
 std::vector<int> Drive::Believed(const wnn::Recollection& recollection, double place_m, int count) {
   wnn::Observation observation;
   observation.histogram = recollection.histogram;
-  for (const wnn::LabelVotes& one : recollection.histogram) observation.neurons += one.votes;
+  observation.neurons = recollection.neurons_read;
   const std::vector<double> belief = sequence_->Update(observation);
   std::vector<wnn::LabelVotes> votes;
   for (std::size_t place = 0; place < belief.size(); ++place) {

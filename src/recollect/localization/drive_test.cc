@@ -71,6 +71,7 @@ TEST_F(DriveTest, BelievesTheDriveRatherThanOneImage) {
   const auto see = [&](std::vector<wnn::LabelVotes> votes) {
     wnn::Recollection recollection;
     recollection.histogram = std::move(votes);
+    for (const auto& one : recollection.histogram) recollection.neurons_read += one.votes;
     return drive.Believed(recollection, 8, 5);
   };
   for (const int key : {3, 4, 5, 6, 7}) see({{key, 100}});

@@ -8,6 +8,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/stopwatch.h"
 #include "recollect/localization/proposals.h"
+#include "recollect/map/trials.h"
 #include "recollect/matching/mapped.h"
 #include "recollect/wnn/displaced.h"
 
@@ -24,6 +25,10 @@ bool IsNear(const matching::PosePrior& expected, const SE3& world_from_camera) {
   const double sigma_m = std::sqrt(expected.covariance(5, 5));
   return (world_from_camera.translation() - expected.world_from_camera.translation()).norm() <
          3 * sigma_m;
+}
+
+wnn::ImageView ViewOf(const cv::Mat& image) {
+  return {image.data, image.cols, image.rows, 3, static_cast<std::ptrdiff_t>(image.step)};
 }
 
 Relative Choose(const std::optional<Relative>& wanted, bool network, bool geometry) {
@@ -61,8 +66,12 @@ Localizer::Localizer(const Map& map, std::optional<cnn::PoseNetwork> network, Th
       relative_(Choose(options.relative, network_.has_value(), map.HasGeometry())),
       frames_(matching::FramesOf(map)),
       encoder_(map.description().network, map.description().camera.left.width,
-               map.description().camera.left.height, pool) {
+               map.description().camera.left.height, pool),
+      route_(RouteOf(map)) {
   Require(map.size() > 0, "map", "has no key frames");
+  Require(!options.precision || map.description().recognition, "map",
+          "does not tell how sure its answers are, so none can be refused",
+          "measure that with: recollect map calibrate MAP");
   if (options.sequence) drive_.emplace(map, *options.sequence);
 }
 
@@ -83,6 +92,7 @@ Localization Localizer::Localize(const cv::Mat& image, const std::string& name) 
   answer.votes.assign(recollection.histogram.begin(),
                       recollection.histogram.begin() + static_cast<std::ptrdiff_t>(kept));
   answer.ms.recollect = step.Milliseconds();
+  Judge(image, recollection, answer);
 
   // Section III: G_L = G_K T(delta), T(delta) by the siamese network (III-B) or from landmarks.
   if (relative_ == Relative::kCnn) {
@@ -92,8 +102,26 @@ Localization Localizer::Localize(const cv::Mat& image, const std::string& name) 
   }
   answer.keyframe_from_live =
       map_.At(answer.key_frame).world_from_camera.Inverse() * answer.world_from_camera;
+  if (!answer.recognised && answer.state != State::kLocalised) answer.state = State::kLost;
   answer.ms.total = whole.Milliseconds();
   return answer;
+}
+
+void Localizer::Judge(const cv::Mat& image, const wnn::Recollection& recollection,
+                      Localization& answer) {
+  const auto& calibration = map_.description().recognition;
+  if (calibration) {
+    answer.probability =
+        wnn::Judge(*calibration, route_, recollection.histogram, recollection.neurons_read)
+            .probability;
+  }
+  if (options_.precision) {
+    answer.recognised = *answer.probability >= wnn::ThresholdFor(*calibration, *options_.precision);
+  }
+  if (options_.explain) {
+    answer.explanation = wnn::Explain(map_.memory(), encoder_, ViewOf(image), recollection,
+                                      wnn::RunnerUp(route_, recollection));
+  }
 }
 
 void Localizer::RelateByNetwork(const cv::Mat& image, Localization& answer) {
@@ -252,9 +280,7 @@ wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& 
           fmt::format("is {}x{} with {} channels, the map's are {}x{} in colour", image.cols,
                       image.rows, image.channels(), camera.width, camera.height),
           "localise with the camera that made the map");
-  const wnn::ImageView view{image.data, image.cols, image.rows, 3,
-                            static_cast<std::ptrdiff_t>(image.step)};
-  return wnn::RecollectImage(map_.memory(), encoder_, view, pool_, options_.search);
+  return wnn::RecollectImage(map_.memory(), encoder_, ViewOf(image), pool_, options_.search);
 }
 
 SE3 Localizer::Relate(const cv::Mat& live, const cv::Mat& key_frame) {

@@ -10,6 +10,7 @@
 #include "recollect/map/map.h"
 #include "recollect/matching/verify.h"
 #include "recollect/wnn/encoder.h"
+#include "recollect/wnn/explanation.h"
 #include "recollect/wnn/search.h"
 
 namespace recollect {
@@ -48,6 +49,13 @@ struct Localization {
   SE3 keyframe_from_live;  // T(delta): world_from_camera as seen from key_frame
   double confidence = 0;   // the committee's: (votes of the first - of the second) / of the first
   std::vector<wnn::LabelVotes> votes;  // of the key frames with most, at most five
+  // Of the committee's place being right within one key frame; none where the map has no
+  // MapDescription::recognition.
+  std::optional<double> probability;
+  // False: less likely than the precision wanted asks for. Such an image is lost, unless geometry
+  // by itself localised it.
+  bool recognised = true;
+  std::optional<wnn::Explanation> explanation;  // where that was asked for
   // Of world_from_camera: the truth is world_from_camera * Exp(xi), xi ~ N(0, covariance), rotation
   // first: rad and m in the camera's axes. Of the network: its errors on its validation pairs.
   Matrix6d covariance = Matrix6d::Zero();
@@ -68,6 +76,10 @@ struct LocalizerOptions {
   // Images come from one drive, in order: those before say where to look (geometry only). None:
   // each image by itself.
   std::optional<wnn::SequenceOptions> sequence;
+  // Of the places recognised, so many are to be right; images that are too unlikely to be are lost.
+  // Needs a map with MapDescription::recognition. None: no image is refused.
+  std::optional<double> precision;
+  bool explain = false;  // which neurons voted for the key frame recollected, and for which else
 };
 
 // Localises images against a map, without any other input. Remembers nothing from image to image
@@ -98,6 +110,7 @@ class Localizer {
 
  private:
   // Each sets what it knows of the answer.
+  void Judge(const cv::Mat& image, const wnn::Recollection& recollection, Localization& answer);
   void RelateByNetwork(const cv::Mat& image, Localization& answer);
   void RelateByGeometry(const cv::Mat& image, const wnn::Recollection& recollection,
                         Localization& answer);
@@ -120,6 +133,7 @@ class Localizer {
   Relative relative_;
   matching::MappedFrames frames_;
   wnn::Encoder encoder_;
+  wnn::Route route_;
   std::optional<Drive> drive_;
   cv::Mat last_image_;  // of the drive
 };

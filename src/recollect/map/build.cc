@@ -163,6 +163,17 @@ void Append(StoreWriter& writer, const std::string& where, MapDescription descri
   writer.Put(kDescriptionKey, std::as_bytes(std::span(json)));
 }
 
+// Changes what a map says of itself.
+void Describe(const std::filesystem::path& file,
+              const std::function<void(MapDescription& description)>& change) {
+  StoreWriter writer(file, /*create=*/false);
+  MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
+  change(description);
+  const std::string json = ToJson(description);
+  writer.Put(kDescriptionKey, std::as_bytes(std::span(json)));
+  writer.Commit();
+}
+
 }  // namespace
 
 void CreateMap(const std::filesystem::path& file, std::span<const Lap> laps,
@@ -189,7 +200,8 @@ void CreateMap(const std::filesystem::path& file, std::span<const Lap> laps,
 void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, ThreadPool& pool,
               const ProgressSink& progress, const GeometrySource& geometry) {
   StoreWriter writer(file, /*create=*/false);
-  const MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
+  MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
+  description.recognition.reset();  // that was of another map
   const std::vector<Selection> selections = Select(laps, description);
   const bool has_geometry = writer.Get(Table::kGeometry, 0).has_value();
   Require(!has_geometry || geometry, file.string(),
@@ -200,12 +212,11 @@ void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, Thre
 }
 
 void SetGeometryInflation(const std::filesystem::path& file, double inflation) {
-  StoreWriter writer(file, /*create=*/false);
-  MapDescription description = DescriptionFrom(writer.Get(kDescriptionKey), file.string());
-  description.geometry_inflation = inflation;
-  const std::string json = ToJson(description);
-  writer.Put(kDescriptionKey, std::as_bytes(std::span(json)));
-  writer.Commit();
+  Describe(file, [&](MapDescription& description) { description.geometry_inflation = inflation; });
+}
+
+void SetRecognition(const std::filesystem::path& file, const wnn::Calibration& calibration) {
+  Describe(file, [&](MapDescription& description) { description.recognition = calibration; });
 }
 
 }  // namespace recollect

@@ -85,6 +85,37 @@ wnn::NetworkOptions NetworkFromJson(const json& j) {
   return network;
 }
 
+json VotesToJson(const wnn::VoteModel& votes) {
+  return {{"floor", votes.floor}, {"trust", votes.trust}, {"sharpness", votes.sharpness}};
+}
+
+json CalibrationToJson(const wnn::Calibration& c) {
+  json thresholds = json::array();
+  for (const auto& one : c.thresholds) thresholds.push_back({one.precision, one.probability});
+  return {{"votes", VotesToJson(c.votes)},
+          {"sequence", VotesToJson(c.sequence)},
+          {"weights", c.weights},
+          {"thresholds", thresholds},
+          {"trials", c.trials}};
+}
+
+wnn::VoteModel VotesFromJson(const json& j) {
+  return {j.at("floor").get<double>(), j.at("trust").get<double>(),
+          j.at("sharpness").get<double>()};
+}
+
+wnn::Calibration CalibrationFromJson(const json& j) {
+  wnn::Calibration c;
+  c.votes = VotesFromJson(j.at("votes"));
+  c.sequence = VotesFromJson(j.at("sequence"));
+  j.at("trials").get_to(c.trials);
+  for (std::size_t i = 0; i < std::size(c.weights); ++i) j.at("weights").at(i).get_to(c.weights[i]);
+  for (const json& one : j.at("thresholds")) {
+    c.thresholds.push_back({one.at(0).get<double>(), one.at(1).get<double>()});
+  }
+  return c;
+}
+
 }  // namespace
 
 int MapDescription::KeyFrames() const {
@@ -115,6 +146,7 @@ std::string ToJson(const MapDescription& d) {
                       {"wnn", NetworkToJson(d.network)},
                       {"laps", laps}};
   if (d.geometry_inflation > 0) description["geometry_inflation"] = d.geometry_inflation;
+  if (d.recognition) description["recognition"] = CalibrationToJson(*d.recognition);
   return description.dump();
 }
 
@@ -141,6 +173,7 @@ MapDescription ParseMapDescription(const std::string& text, const std::string& w
     j.at("spacing_m").get_to(d.spacing_m);
     d.network = NetworkFromJson(j.at("wnn"));
     d.geometry_inflation = j.value("geometry_inflation", 0.0);
+    if (j.contains("recognition")) d.recognition = CalibrationFromJson(j.at("recognition"));
     for (const json& lap : j.at("laps")) {
       d.laps.push_back({lap.at("name").get<std::string>(), lap.at("key_frames").get<int>()});
     }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "recollect/geometry/camera.h"
 #include "recollect/geometry/se3.h"
+#include "recollect/wnn/calibration.h"
 #include "recollect/wnn/network.h"
 
 namespace recollect {
@@ -26,6 +28,9 @@ struct MapDescription {
   // Standard deviations of poses found by geometry are so many times those of their model,
   // measured on the mapped laps themselves; 0 where that has not been done.
   double geometry_inflation = 0;
+  // What votes are worth here, measured on the mapped laps themselves; none where that has not been
+  // done since the last lap came.
+  std::optional<wnn::Calibration> recognition;
   std::vector<MapLap> laps;
 
   int KeyFrames() const;

@@ -85,4 +85,7 @@ void AddToMap(const std::filesystem::path& file, std::span<const Lap> laps, Thre
 // MapDescription::geometry_inflation.
 void SetGeometryInflation(const std::filesystem::path& file, double inflation);
 
+// What votes are worth in this map; see MapDescription::recognition and CalibrateRecognition.
+void SetRecognition(const std::filesystem::path& file, const wnn::Calibration& calibration);
+
 }  // namespace recollect

@@ -11,6 +11,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
+#include "recollect/map/trials.h"
 #include "recollect/wnn/encoder.h"
 
 namespace recollect {
@@ -270,6 +271,48 @@ TEST_F(MapTest, TellsMissingBlocksAndRecords) {
   writer.Put(Table::kPatterns, 1, junk);
   writer.Commit();
   EXPECT_THROW(Map::Open(file), Error);
+}
+
+TEST_F(MapTest, KeepsHowSureItsAnswersAre) {
+  const fs::path file = folder_ / "m.map";
+  const std::vector<Lap> laps = {MakeLap("a", 12)};
+  CreateMap(file, laps, options_, pool_);
+  EXPECT_FALSE(Map::Open(file).description().recognition);
+  CalibrateRecognition(file, pool_);
+  const auto kept = Map::Open(file).description().recognition;
+  ASSERT_TRUE(kept);
+  EXPECT_GE(kept->trials, 12);
+  EXPECT_FALSE(kept->thresholds.empty());
+  ExpectHolds(Map::Open(file), laps);
+
+  // Another map is as sure as that is, no more.
+  const std::vector<Lap> more = {MakeLap("b", 2)};
+  AddToMap(file, more, pool_);
+  EXPECT_FALSE(Map::Open(file).description().recognition);
+
+  // What is written comes back as it was.
+  wnn::Calibration some;
+  some.votes = {0.01, 3, 4};
+  some.sequence = {0.02, 0.5, 0.25};
+  some.weights[1] = 0.75;
+  some.thresholds = {{0.9, 0.4}, {0.99, 0.8}};
+  some.trials = 7;
+  SetRecognition(file, some);
+  const auto back = Map::Open(file).description().recognition;
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->votes.sharpness, 4);
+  EXPECT_EQ(back->sequence.trust, 0.5);
+  EXPECT_EQ(back->weights[1], 0.75);
+  EXPECT_EQ(back->trials, 7);
+  EXPECT_EQ(wnn::ThresholdFor(*back, 0.95), 0.8);
+}
+
+TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {
+  const fs::path file = folder_ / "m.map";
+  const std::vector<Lap> laps = {MakeLap("a", 2)};
+  CreateMap(file, laps, options_, pool_);
+  EXPECT_THROW(CalibrateRecognition(file, pool_), Error);
+  EXPECT_FALSE(Map::Open(file).description().recognition);
 }
 
 }  // namespace

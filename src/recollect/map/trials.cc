@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/random.h"
 #include "recollect/dataset/perturbation.h"
@@ -13,9 +14,11 @@
 namespace recollect {
 namespace {
 
-constexpr double kLapBreak = 3;  // spacings
-constexpr double kLoop = 2;      // spacings
-constexpr double kAlike = 0.5;   // cosine of the angle between views of one place
+constexpr double kLapBreak = 3;   // spacings
+constexpr double kLoop = 2;       // spacings
+constexpr int kVisitLength = 10;  // entries within which another visit changes
+constexpr int kRun = 20;          // entries that calibration looks for one after the other
+constexpr double kAlike = 0.5;    // cosine of the angle between views of one place
 
 double Apart(const KeyFrame& a, const KeyFrame& b) {
   return (a.world_from_camera.translation() - b.world_from_camera.translation()).norm();
@@ -92,22 +95,26 @@ wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
 std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
                                    const TrialOptions& options, const ProgressSink& progress) {
   const wnn::Route& route = mapped.route;
-  const bool one_lap = std::all_of(mapped.lap.begin(), mapped.lap.end(),
-                                   [&](int lap) { return lap == mapped.lap.front(); });
   std::vector<wnn::Trial> trials;
-  for (int entry = 0; entry < route.places(); entry += options.stride) {
+  for (int entry = 0; entry < route.places(); ++entry) {
+    if (entry / options.run % options.stride != 0) continue;
     const auto e = static_cast<std::size_t>(entry);
+    const bool alone = route.beside[e].empty();  // no other lap saw the place
     cv::Mat image = mapped.image(entry);
-    if (one_lap) image = Perturbed(image, SubSeed(options.seed, e));
+    if (alone) {
+      image =
+          Perturbed(image, VisitAlong(options.seed, entry, kVisitLength), SubSeed(options.seed, e));
+    }
     const wnn::ImageView view{image.data, image.cols, image.rows, 3,
                               static_cast<std::ptrdiff_t>(image.step)};
     std::vector<bool> allowed(static_cast<std::size_t>(route.places()));
     for (std::size_t i = 0; i < allowed.size(); ++i) {
-      allowed[i] = one_lap ? i != e : mapped.lap[i] != mapped.lap[e];
+      allowed[i] = alone ? i != e : mapped.lap[i] != mapped.lap[e];
     }
     const auto ask = [&](bool nowhere) {
       wnn::EntrySet set(mapped.memory);
       wnn::Trial trial;
+      if (!nowhere) trial.place = entry;
       bool found = nowhere;  // whether there is anything to find
       for (int i = 0; i < route.places(); ++i) {
         const bool may = allowed[static_cast<std::size_t>(i)];
@@ -117,7 +124,7 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
         trial.right.push_back(i);
         found = found || may;
       }
-      if (!nowhere && !one_lap) trial.exact = route.beside[e];
+      if (!nowhere && !alone) trial.exact = route.beside[e];
       if (set.size() == 0 || !found) return;
       wnn::SearchOptions search;
       search.allowed = &set;
@@ -134,6 +141,29 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
     Report(progress, "trials", entry + 1, route.places());
   }
   return trials;
+}
+
+void CalibrateRecognition(const std::filesystem::path& file, ThreadPool& pool,
+                          const ProgressSink& progress, int trials) {
+  wnn::Calibration calibration;
+  {
+    const Map map = Map::Open(file);
+    Require(map.size() >= 3 && trials >= 1, file.string(),
+            fmt::format("{} key frames are too few to tell what votes are worth", map.size()));
+    const MapDescription& description = map.description();
+    const wnn::Route route = RouteOf(map);
+    std::vector<int> laps;
+    for (int key = 0; key < map.size(); ++key) laps.push_back(static_cast<int>(map.At(key).lap));
+    wnn::Encoder encoder(description.network, description.camera.left.width,
+                         description.camera.left.height, pool);
+    const Mapped mapped{map.memory(), route, laps, [&](int entry) { return map.Image(entry); }};
+    const int stride = (map.size() + trials - 1) / trials;
+    calibration = wnn::Calibrate(
+        route,
+        MakeTrials(mapped, encoder, pool,
+                   {.stride = stride, .run = kRun, .seed = description.network.seed}, progress));
+  }
+  SetRecognition(file, calibration);
 }
 
 }  // namespace recollect

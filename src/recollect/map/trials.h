@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
@@ -31,16 +32,23 @@ struct Mapped {
 };
 
 struct TrialOptions {
-  int stride = 1;       // every so many-th entry is a live image
+  int stride = 1;       // every so many-th run of entries is looked for,
+  int run = 1;          // so many of them that follow each other
   bool nowhere = true;  // each once more with its place and `far` places around it taken away
   int far = 10;
   std::uint64_t seed = 1;
 };
 
-// Trials from mapped images alone: each is looked for among the entries of all other laps. With one
-// lap only, it is perturbed (dataset/perturbation.h) and looked for among the entries but itself.
+// Trials from mapped images alone: each is looked for among the entries of all other laps. What no
+// other lap saw is perturbed (dataset/perturbation.h) and looked for among the entries but itself.
 std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
                                    const TrialOptions& options = {},
                                    const ProgressSink& progress = {});
+
+// Measures what votes are worth in a map (wnn::Calibrate) by such trials, at most about `trials`
+// mapped images, evenly spread, and writes it into the map. Throws Error where the map has fewer
+// than three key frames.
+void CalibrateRecognition(const std::filesystem::path& file, ThreadPool& pool,
+                          const ProgressSink& progress = {}, int trials = 400);
 
 }  // namespace recollect

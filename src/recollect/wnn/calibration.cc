@@ -14,6 +14,8 @@ namespace {
 constexpr double kFloors[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05};
 constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 11, 16};
 constexpr double kSharpnesses[] = {0.25, 0.5, 1, 2, 3, 4, 6, 8};
+constexpr double kSequenceTrusts[] = {0.125, 0.25, 0.5, 1, 2, 4, 8};  // and sharpnesses
+constexpr std::size_t kShortestRun = 5;                     // images that make a sequence
 constexpr double kPrecisions[] = {0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995};
 constexpr double kSmallest = 1e-6;  // chances are kept this far from 0 and 1
 constexpr double kNowhere = 0.1;    // what an image from nowhere counts beside one from the route
@@ -122,6 +124,56 @@ VoteModel FitVotes(const Route& route, std::span<const Trial> trials) {
   return best;
 }
 
+// Trials whose places follow each other.
+std::vector<std::vector<const Trial*>> RunsOf(const Route& route, std::span<const Trial> trials) {
+  std::vector<std::vector<const Trial*>> runs;
+  int last = -1;
+  for (const Trial& trial : trials) {
+    if (trial.place < 0) continue;
+    const bool follows = last >= 0 && route.next[static_cast<std::size_t>(last)] == trial.place;
+    if (!follows) runs.emplace_back();
+    runs.back().push_back(&trial);
+    last = trial.place;
+  }
+  std::erase_if(runs, [](const auto& run) { return run.size() < kShortestRun; });
+  return runs;
+}
+
+// Sum of the logarithms of what a filter believes of the truth.
+double BeliefInTruth(const Route& route, const std::vector<std::vector<const Trial*>>& runs,
+                     const VoteModel& votes) {
+  const auto filter = MakeSequence({.history = 0, .votes = votes}, route);
+  double sum = 0;
+  for (const auto& run : runs) {
+    filter->Reset();
+    for (const Trial* trial : run) {
+      const auto belief = filter->Update({trial->histogram, trial->neurons, {}, {}});
+      double right = 0;
+      const std::vector<int>& truth = trial->exact.empty() ? trial->right : trial->exact;
+      for (const int place : truth) right += belief[static_cast<std::size_t>(place)];
+      sum += std::log(std::max(right, kSmallest));
+    }
+  }
+  return sum;
+}
+
+VoteModel FitSequence(const Route& route, std::span<const Trial> trials) {
+  const auto runs = RunsOf(route, trials);
+  VoteModel best;
+  if (runs.empty()) return best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double trust : kSequenceTrusts) {
+    for (const double sharpness : kSequenceTrusts) {
+      const VoteModel model{best.floor, trust, sharpness};
+      const double fit = BeliefInTruth(route, runs, model);
+      if (fit <= most) continue;
+      most = fit;
+      best = model;
+    }
+  }
+  return best;
+}
+
 // A live image's features, whether its answer was right, and what it counts.
 struct Example {
   Eigen::Vector3d x;
@@ -166,7 +218,9 @@ Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
       std::any_of(trials.begin(), trials.end(), [](const Trial& t) { return !t.right.empty(); }),
       "calibration", "no trial lies on the route");
   Calibration calibration;
+  calibration.trials = static_cast<int>(trials.size());
   calibration.votes = FitVotes(route, trials);
+  calibration.sequence = FitSequence(route, trials);
   std::vector<Example> examples;
   std::vector<Features> features;
   for (const Trial& trial : trials) {

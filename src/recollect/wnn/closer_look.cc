@@ -48,14 +48,36 @@ RECOLLECT_COUNTING void AddDistances(const std::uint64_t* low, const std::uint64
   squares += own_squares;
 }
 
-// votes[d] += whether any displacement at most one step from d is near.
-void AddVotes(const std::vector<std::uint8_t>& near, const Displacements& grid,
-              std::vector<std::uint8_t>& along_rows, std::uint16_t* votes) {
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  const auto rows = static_cast<std::size_t>(grid.rows);
+// The displacements of a grid that lie at most `reach` steps from one of them.
+struct Box {
+  Box(const Displacements& grid, int around, int reach) {
+    const int x = around % grid.columns, y = around / grid.columns;
+    left = std::max(0, x - reach);
+    top = std::max(0, y - reach);
+    columns = std::min(grid.columns - 1, x + reach) - left + 1;
+    rows = std::min(grid.rows - 1, y + reach) - top + 1;
+    stride = grid.columns;
+  }
+  std::size_t count() const { return static_cast<std::size_t>(columns * rows); }
+  int Displacement(int i) const { return (top + i / columns) * stride + left + i % columns; }
+  // What lies in the box, row by row.
+  void Cut(std::span<const std::uint64_t> all, std::uint64_t* cut) const {
+    for (int row = 0; row < rows; ++row, cut += columns) {
+      std::copy_n(all.begin() + (top + row) * stride + left, columns, cut);
+    }
+  }
+
+  int left, top, columns, rows, stride;
+};
+
+// votes[i] += whether any displacement of the box at most one step from i is near.
+void AddVotes(const std::uint8_t* near, const Box& box, std::uint8_t* along_rows,
+              std::uint16_t* votes) {
+  const auto columns = static_cast<std::size_t>(box.columns);
+  const auto rows = static_cast<std::size_t>(box.rows);
   for (std::size_t y = 0; y < rows; ++y) {
-    const std::uint8_t* in = near.data() + y * columns;
-    std::uint8_t* out = along_rows.data() + y * columns;
+    const std::uint8_t* in = near + y * columns;
+    std::uint8_t* out = along_rows + y * columns;
     std::copy_n(in, columns, out);
     for (std::size_t x = 1; x < columns; ++x) {
       out[x] |= in[x - 1];
@@ -63,7 +85,7 @@ void AddVotes(const std::vector<std::uint8_t>& near, const Displacements& grid,
     }
   }
   for (std::size_t y = 0; y < rows; ++y) {
-    const std::uint8_t* own = along_rows.data() + y * columns;
+    const std::uint8_t* own = along_rows + y * columns;
     const std::uint8_t* above = y > 0 ? own - columns : own;
     const std::uint8_t* below = y + 1 < rows ? own + columns : own;
     std::uint16_t* to = votes + y * columns;
@@ -83,18 +105,19 @@ std::vector<std::vector<std::uint64_t>> PatternsOf(const Memory& memory,
 }  // namespace
 
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
-                               std::size_t stride, std::span<const int> usual, ThreadPool& pool) {
-  const auto& patterns = live.patterns;
+                               std::span<const int> displacements, std::span<const int> usual,
+                               ThreadPool& pool) {
   const auto entries = PatternsOf(memory, usual);
   std::vector<int> near(static_cast<std::size_t>(memory.neurons()), -1);
   if (entries.empty()) return near;
+  const std::size_t seen = displacements.size();
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint64_t> low(patterns.size()), high(patterns.size());
+    std::vector<std::uint64_t> low(seen), high(seen);
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      std::size_t seen = 0;
-      for (std::size_t d = 0; d < patterns.size(); d += stride, ++seen) {
-        low[seen] = patterns[d][kWords * n];
-        high[seen] = patterns[d][kWords * n + 1];
+      const auto all_low = live.Of(n, 0), all_high = live.Of(n, 1);
+      for (std::size_t d = 0; d < seen; ++d) {
+        low[d] = all_low[static_cast<std::size_t>(displacements[d])];
+        high[d] = all_high[static_cast<std::size_t>(displacements[d])];
       }
       std::uint64_t sum = 0, squares = 0;
       for (const auto& entry : entries) {
@@ -113,26 +136,34 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
 }
 
 std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live,
-                             std::span<const int> near, std::span<const int> entries,
-                             ThreadPool& pool) {
+                             std::span<const int> near, std::span<const Candidate> candidates,
+                             int reach, ThreadPool& pool) {
+  std::vector<int> entries;
+  std::vector<Box> boxes;
+  std::vector<std::size_t> begins = {0};  // of the votes of each box
+  std::size_t most = 0;
+  for (const Candidate& one : candidates) {
+    entries.push_back(one.entry);
+    boxes.emplace_back(live.grid, one.around, reach);
+    begins.push_back(begins.back() + boxes.back().count());
+    most = std::max(most, boxes.back().count());
+  }
   const auto stored = PatternsOf(memory, entries);
-  const std::size_t count = live.patterns.size();
-  std::vector<std::uint16_t> votes(stored.size() * count, 0);
+  std::vector<std::uint16_t> votes(begins.back(), 0);
   std::mutex adding;
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<std::uint16_t> own(votes.size(), 0);
-    std::vector<std::uint64_t> low(count), high(count);
-    std::vector<std::uint8_t> is_near(count), along_rows(count);
+    std::vector<std::uint64_t> low(most), high(most);
+    std::vector<std::uint8_t> is_near(most), along_rows(most);
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
       if (near[n] < 0) continue;
-      for (std::size_t d = 0; d < count; ++d) {
-        low[d] = live.patterns[d][kWords * n];
-        high[d] = live.patterns[d][kWords * n + 1];
-      }
-      for (std::size_t e = 0; e < stored.size(); ++e) {
-        if (FindNear(low.data(), high.data(), count, &stored[e][kWords * n],
-                     static_cast<std::uint64_t>(near[n]), is_near.data())) {
-          AddVotes(is_near, live.grid, along_rows, own.data() + e * count);
+      const auto limit = static_cast<std::uint64_t>(near[n]);
+      for (std::size_t e = 0; e < boxes.size(); ++e) {
+        boxes[e].Cut(live.Of(n, 0), low.data());
+        boxes[e].Cut(live.Of(n, 1), high.data());
+        if (FindNear(low.data(), high.data(), boxes[e].count(), &stored[e][kWords * n], limit,
+                     is_near.data())) {
+          AddVotes(is_near.data(), boxes[e], along_rows.data(), own.data() + begins[e]);
         }
       }
     }
@@ -142,12 +173,38 @@ std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live
     }
   });
   std::vector<Look> looks;
-  for (std::size_t e = 0; e < stored.size(); ++e) {
-    const auto first = votes.begin() + static_cast<std::ptrdiff_t>(e * count);
-    const auto best = std::max_element(first, first + static_cast<std::ptrdiff_t>(count));
-    looks.push_back({*best, static_cast<int>(best - first)});
+  for (std::size_t e = 0; e < boxes.size(); ++e) {
+    const auto first = votes.begin() + static_cast<std::ptrdiff_t>(begins[e]);
+    const auto best =
+        std::max_element(first, first + static_cast<std::ptrdiff_t>(boxes[e].count()));
+    looks.push_back({*best, boxes[e].Displacement(static_cast<int>(best - first))});
   }
   return looks;
+}
+
+std::vector<bool> VotersOf(const Memory& memory, const DisplacedPatterns& live,
+                           std::span<const int> near, const Candidate& candidate, int reach,
+                           const Look& look) {
+  const std::vector<std::uint64_t> stored = memory.Pattern(candidate.entry);
+  const Box box(live.grid, candidate.around, reach);
+  std::vector<std::uint64_t> low(box.count()), high(box.count());
+  std::vector<std::uint8_t> is_near(box.count()), along_rows(box.count());
+  std::vector<bool> voters;
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    std::vector<std::uint16_t> votes(box.count(), 0);
+    box.Cut(live.Of(n, 0), low.data());
+    box.Cut(live.Of(n, 1), high.data());
+    if (near[n] >= 0 && FindNear(low.data(), high.data(), box.count(), &stored[kWords * n],
+                                 static_cast<std::uint64_t>(near[n]), is_near.data())) {
+      AddVotes(is_near.data(), box, along_rows.data(), votes.data());
+    }
+    bool voted = false;
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+      voted = voted || (votes[i] > 0 && box.Displacement(static_cast<int>(i)) == look.displacement);
+    }
+    voters.push_back(voted);
+  }
+  return voters;
 }
 
 }  // namespace recollect::wnn

@@ -13,6 +13,15 @@ struct LabelVotes {
   int votes = 0;
 };
 
+// How a label was looked at under displacements.
+struct LabelView {
+  int label = 0;
+  int entry = -1;        // of that label, the one that got these votes; -1: any of them
+  int displacement = 0;  // that its voters agree on; numbered by the grid of the look
+  int around = 0;        // the displacement about which a second look was taken
+  int votes = 0;
+};
+
 // What the committee of neurons recollects of an image (Forechi et al. 2018, section III-A).
 struct Recollection {
   int winner = -1;        // the label with most votes, the lowest of equals; -1: nothing is stored
@@ -24,6 +33,12 @@ struct Recollection {
   // need not be a fair sample: neurons that settle the matter are asked first.
   std::vector<LabelVotes> histogram;
   std::vector<Answer> answers;  // by neuron; kNoAnswer where it was not asked
+
+  // How it came to this, where images are looked at under displacements (displaced.h); else empty.
+  std::vector<int> seen_under;        // by neuron: the displacement of its answer
+  std::vector<LabelView> first_look;  // by rising label
+  std::vector<int> near;              // by neuron: how far it votes in the second look; -1: nowhere
+  std::vector<LabelView> second_look;  // by rising label
 };
 
 // Counts the votes of the neurons that have an answer. labels: by entry, each >= 0.

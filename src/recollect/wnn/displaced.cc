@@ -11,14 +11,14 @@
 namespace recollect::wnn {
 namespace {
 
-constexpr std::size_t kBatch = 8;   // images that share what a search reads from memory
+constexpr int kBatch = 11;          // images that share what a search reads from memory
 constexpr std::size_t kLooks = 12;  // labels that are looked at again,
 constexpr int kAround = 2;          // and so many before and after each
 constexpr int kUsual = 64;          // entries that tell how far entries usually lie
 
-// The best, over displacements, of the votes there and half of those one step off, times two.
-int AgreedVotes(const std::vector<int>& votes, const Displacements& grid) {
-  int best = 0;
+// The best displacement by the votes there and half of those one step off, and these times two.
+LabelView Agreed(int label, const std::vector<int>& votes, const Displacements& grid) {
+  LabelView best{label, -1, 0, 0, 0};
   for (int y = 0; y < grid.rows; ++y) {
     for (int x = 0; x < grid.columns; ++x) {
       int sum = votes[static_cast<std::size_t>(y * grid.columns + x)];
@@ -27,7 +27,7 @@ int AgreedVotes(const std::vector<int>& votes, const Displacements& grid) {
           sum += votes[static_cast<std::size_t>(b * grid.columns + a)];
         }
       }
-      best = std::max(best, sum);
+      if (sum > best.votes) best = {label, -1, y * grid.columns + x, 0, sum};
     }
   }
   return best;
@@ -58,36 +58,54 @@ std::vector<int> Spread(const Memory& memory, const EntrySet* allowed, int count
   return spread;
 }
 
-// Entries of the labels with most votes and of those around them.
-std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
-                           std::span<const LabelVotes> histogram) {
-  std::set<int> labels;
-  for (const LabelVotes& one : histogram.first(std::min(kLooks, histogram.size()))) {
-    for (int label = one.label - kAround; label <= one.label + kAround; ++label) {
-      if (label >= 0 && label < memory.labels()) labels.insert(label);
+// Entries of the labels with most votes and of those around them, to be looked at about the
+// displacement of the most voted of these.
+std::vector<Candidate> Promising(const Memory& memory, const EntrySet* allowed, const Grids& grids,
+                                 const Recollection& recollection) {
+  std::map<int, int> around;  // by label
+  const std::span all(recollection.histogram);
+  const auto best = all.first(std::min(kLooks, all.size()));
+  for (const int reach : {0, kAround}) {
+    for (const LabelVotes& one : best) {
+      const auto& views = recollection.first_look;
+      const auto own =
+          std::lower_bound(views.begin(), views.end(), one.label,
+                           [](const LabelView& view, int label) { return view.label < label; });
+      for (int label = one.label - reach; label <= one.label + reach; ++label) {
+        if (label < 0 || label >= memory.labels()) continue;
+        around.emplace(label, grids.Closer(own->displacement));
+      }
     }
   }
-  std::vector<int> entries;
-  for (const int label : labels) {
+  std::vector<Candidate> candidates;
+  for (const auto& [label, displacement] : around) {
     for (const int entry : memory.EntriesOf(label)) {
-      if (!allowed || allowed->Allows(entry)) entries.push_back(entry);
+      if (!allowed || allowed->Allows(entry)) candidates.push_back({entry, displacement});
     }
   }
-  return entries;
+  return candidates;
 }
 
 // Adds the votes of a closer look.
-void LookAgain(const Memory& memory, const DisplacedPatterns& live, std::size_t stride,
+void LookAgain(const Memory& memory, const DisplacedPatterns& live, const Grids& grids,
                ThreadPool& pool, const SearchOptions& search, Recollection& recollection) {
-  const std::vector<int> entries = Promising(memory, search.allowed, recollection.histogram);
-  const std::vector<int> near =
-      NearDistances(memory, live, stride, Spread(memory, search.allowed, kUsual), pool);
-  const std::vector<Look> looks = LookCloser(memory, live, near, entries, pool);
-  std::map<int, int> votes;  // by label: those of its best entry
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    int& most = votes[memory.label(entries[i])];
-    most = std::max(most, looks[i].votes);
+  const auto candidates = Promising(memory, search.allowed, grids, recollection);
+  std::vector<int> displacements;
+  for (int d = 0; d < grids.first.count(); ++d) displacements.push_back(grids.Closer(d));
+  recollection.near =
+      NearDistances(memory, live, displacements, Spread(memory, search.allowed, kUsual), pool);
+  const std::vector<Look> looks =
+      LookCloser(memory, live, recollection.near, candidates, grids.closer.columns, pool);
+  std::map<int, int> votes;  // by label
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const int label = memory.label(candidates[i].entry);
+    const LabelView view{label, candidates[i].entry, looks[i].displacement, candidates[i].around,
+                         looks[i].votes};
+    auto& views = recollection.second_look;
+    if (views.empty() || views.back().label != label) views.push_back(view);
+    if (view.votes > views.back().votes) views.back() = view;
   }
+  for (const LabelView& view : recollection.second_look) votes[view.label] += view.votes;
   for (const LabelVotes& one : recollection.histogram) votes[one.label] += one.votes;
   std::vector<LabelVotes> histogram;
   for (const auto& [label, count] : votes) {
@@ -98,6 +116,12 @@ void LookAgain(const Memory& memory, const DisplacedPatterns& live, std::size_t 
 
 }  // namespace
 
+Grids::Grids(const Encoder& encoder)
+    : first(encoder.displacements()), closer(encoder.closer_displacements()) {
+  look_closer = closer.count() > 1;
+  if (!look_closer) closer = first;
+}
+
 Recollection MergeDisplaced(std::span<const int> labels,
                             std::span<const std::vector<Answer>> answers,
                             const Displacements& grid) {
@@ -105,19 +129,19 @@ Recollection MergeDisplaced(std::span<const int> labels,
           "as many sets of answers are needed as there are displacements");
   Recollection merged;
   merged.answers = answers.front();
-  std::vector<int> seen_under(merged.answers.size(), 0);
+  merged.seen_under.assign(merged.answers.size(), 0);
   for (std::size_t d = 1; d < answers.size(); ++d) {
     for (std::size_t n = 0; n < merged.answers.size(); ++n) {
       if (answers[d][n] >= merged.answers[n]) continue;
       merged.answers[n] = answers[d][n];
-      seen_under[n] = static_cast<int>(d);
+      merged.seen_under[n] = static_cast<int>(d);
     }
   }
   std::vector<std::pair<int, int>> votes;  // label, displacement
   for (std::size_t n = 0; n < merged.answers.size(); ++n) {
     if (merged.answers[n] == kNoAnswer) continue;
     const auto entry = static_cast<std::size_t>(AnswerEntry(merged.answers[n]));
-    votes.emplace_back(labels[entry], seen_under[n]);
+    votes.emplace_back(labels[entry], merged.seen_under[n]);
   }
   merged.neurons_read = static_cast<int>(votes.size());
   std::sort(votes.begin(), votes.end());
@@ -129,32 +153,29 @@ Recollection MergeDisplaced(std::span<const int> labels,
     for (; vote != votes.end() && vote->first == label; ++vote) {
       ++of_label[static_cast<std::size_t>(vote->second)];
     }
-    doubled.push_back({label, AgreedVotes(of_label, grid)});
+    merged.first_look.push_back(Agreed(label, of_label, grid));
+    doubled.push_back({label, merged.first_look.back().votes});
   }
   SetHistogram(std::move(doubled), merged);
   for (LabelVotes& one : merged.histogram) one.votes = (one.votes + 1) / 2;
+  for (LabelView& view : merged.first_look) view.votes = (view.votes + 1) / 2;
   return merged;
 }
 
 Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageView& image,
                             ThreadPool& pool, const SearchOptions& search) {
-  const Displacements grid = encoder.displacements(), closer = encoder.closer_displacements();
+  const Grids grids(encoder);
+  const Displacements& grid = grids.first;
   if (grid.count() == 1) return Recollect(memory, encoder.Encode(image), pool, search);
-  const bool look_closer = closer.count() > 1;
-  const auto patterns = encoder.EncodeDisplaced(image, look_closer ? closer : grid);
-  const int finer = look_closer ? grid.step / closer.step : 1;
-  const int columns = (grid.columns - 1) * finer + 1;
-  std::vector<std::span<const std::uint64_t>> coarse;
-  for (int y = 0; y < grid.rows; ++y) {
-    for (int x = 0; x < grid.columns; ++x) {
-      coarse.emplace_back(patterns[static_cast<std::size_t>((y * columns + x) * finer)]);
-    }
-  }
+  const DisplacedPatterns& live = encoder.EncodeDisplaced(image, grids.closer);
   std::vector<std::vector<Answer>> answers;
   std::int64_t words = 0;
-  for (std::size_t begin = 0; begin < coarse.size(); begin += kBatch) {
-    const std::span<const std::span<const std::uint64_t>> all = coarse;
-    const auto batch = all.subspan(begin, std::min(kBatch, coarse.size() - begin));
+  for (int begin = 0; begin < grid.count(); begin += kBatch) {
+    std::vector<std::vector<std::uint64_t>> patterns;
+    for (int d = begin; d < std::min(begin + kBatch, grid.count()); ++d) {
+      patterns.push_back(live.Under(grids.Closer(d)));
+    }
+    const std::vector<std::span<const std::uint64_t>> batch(patterns.begin(), patterns.end());
     for (Recollection& one : RecollectBatch(memory, batch, pool, search)) {
       words += one.words_read;
       answers.push_back(std::move(one.answers));
@@ -162,8 +183,7 @@ Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageV
   }
   Recollection merged = MergeDisplaced(memory.entry_labels(), answers, grid);
   merged.words_read = words;
-  if (look_closer)
-    LookAgain(memory, {patterns, closer}, static_cast<std::size_t>(finer), pool, search, merged);
+  if (grids.look_closer) LookAgain(memory, live, grids, pool, search, merged);
   return merged;
 }
 

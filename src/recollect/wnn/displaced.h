@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,18 @@
 #include "recollect/wnn/search.h"
 
 namespace recollect::wnn {
+
+// The grids of displacements of both looks, and how one of the first is numbered in the second.
+struct Grids {
+  explicit Grids(const Encoder& encoder);
+  int finer() const { return first.step / std::max(1, closer.step); }
+  int Closer(int displacement) const {
+    return (displacement / first.columns * closer.columns + displacement % first.columns) * finer();
+  }
+
+  Displacements first, closer;  // the same where there is no second look
+  bool look_closer;
+};
 
 // What the committee recollects of a live image. Where the network has displacements, the image is
 // searched for under each of them, all against the one memory, and MergeDisplaced joins the

@@ -48,6 +48,7 @@ struct Encoder::State {
   cv::Mat kept, window, blurred;
   std::optional<Blur> blur;
   std::optional<InvariantEncoder> invariant;  // takes the place of all that, where wanted
+  DisplacedPatterns displaced;
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
       : options(o), synapses(o, width, height), image_height(height), pool(p) {
@@ -182,33 +183,42 @@ std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) 
   return pattern;
 }
 
-std::vector<std::vector<std::uint64_t>> Encoder::EncodeDisplaced(const ImageView& image,
-                                                                 const Displacements& grid) {
+std::vector<std::uint64_t> DisplacedPatterns::Under(int displacement) const {
+  const auto count = static_cast<std::size_t>(grid.count());
+  std::vector<std::uint64_t> pattern(words.size() / count);
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    pattern[i] = words[i * count + static_cast<std::size_t>(displacement)];
+  }
+  return pattern;
+}
+
+const DisplacedPatterns& Encoder::EncodeDisplaced(const ImageView& image,
+                                                  const Displacements& grid) {
   State& state = *state_;
   state.Check(image);
   const double unit = grid.step * image.width / 640.0;
   const auto pixels = [&](int steps) { return static_cast<int>(std::lround(steps * unit)); };
+  std::vector<Pixel> shifts;
+  for (int y = 0; y < grid.rows; ++y) {
+    for (int x = 0; x < grid.columns; ++x) {
+      shifts.push_back({pixels(x - grid.columns / 2), pixels(y - grid.rows / 2)});
+    }
+  }
+  DisplacedPatterns& displaced = state.displaced;
+  displaced.grid = grid;
+  displaced.words.resize(pattern_words() * shifts.size());
   if (state.invariant) {
     state.invariant->Look(State::Whole(image), {pixels(grid.columns / 2), pixels(grid.rows / 2)});
+    state.invariant->EncodeAll(shifts, displaced.words);
+    return displaced;
   }
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  std::vector<std::vector<std::uint64_t>> patterns(columns * static_cast<std::size_t>(grid.rows),
-                                                   std::vector<std::uint64_t>(pattern_words()));
-  std::vector<Pixel> shifts(columns);
-  for (int y = 0; y < grid.rows; ++y) {
-    const std::span row =
-        std::span(patterns).subspan(static_cast<std::size_t>(y) * columns, columns);
-    for (int x = 0; x < grid.columns; ++x) {
-      shifts[static_cast<std::size_t>(x)] = {pixels(x - grid.columns / 2),
-                                             pixels(y - grid.rows / 2)};
-    }
-    if (state.invariant) {
-      state.invariant->EncodeRow(shifts, row);
-    } else {
-      for (std::size_t x = 0; x < columns; ++x) Encode(image, row[x], shifts[x]);
+  for (std::size_t d = 0; d < shifts.size(); ++d) {
+    const std::vector<std::uint64_t> pattern = Encode(image, shifts[d]);
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      displaced.words[i * shifts.size() + d] = pattern[i];
     }
   }
-  return patterns;
+  return displaced;
 }
 
 }  // namespace recollect::wnn

@@ -22,6 +22,20 @@ struct ImageView {
   std::ptrdiff_t stride = 0;  // bytes from one row to the next
 };
 
+// One image's patterns under all displacements of a grid, which are numbered row by row.
+struct DisplacedPatterns {
+  Displacements grid;
+  std::vector<std::uint64_t> words;  // [neuron][word][displacement]
+
+  // A neuron's first or second words, by displacement.
+  std::span<const std::uint64_t> Of(std::size_t neuron, std::size_t word) const {
+    const auto count = static_cast<std::size_t>(grid.count());
+    return std::span(words).subspan((neuron * kWords + word) * count, count);
+  }
+  // The pattern under one displacement, neurons x kWords words.
+  std::vector<std::uint64_t> Under(int displacement) const;
+};
+
 // Turns images of one size into patterns. Bit i of a neuron is 1 where the value under synapse i
 // is below that under synapse i + 1, the last compared with the first (Minchinton cells). Not to
 // be shared between threads: it keeps its working memory, so only the first frame allocates.
@@ -45,9 +59,8 @@ class Encoder {
   void Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift = {});
   std::vector<std::uint64_t> Encode(const ImageView& image, Pixel shift = {});
 
-  // The image under all displacements of a grid, row by row.
-  std::vector<std::vector<std::uint64_t>> EncodeDisplaced(const ImageView& image,
-                                                          const Displacements& grid);
+  // The image under all displacements of a grid; valid until the next call.
+  const DisplacedPatterns& EncodeDisplaced(const ImageView& image, const Displacements& grid);
 
  private:
   struct State;

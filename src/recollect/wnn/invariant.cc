@@ -7,6 +7,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
+#include "recollect/wnn/bit_square.h"
 
 namespace recollect::wnn {
 namespace {
@@ -62,28 +63,6 @@ void Gather(const std::uint8_t* bits, const std::int32_t* at, std::uint64_t* wor
     std::uint64_t word = 0;
     for (int i = 0; i < 64; ++i) word |= std::uint64_t{bits[at[64 * w + i]]} << i;
     words[w] = word;
-  }
-}
-
-// The bits of one neuron under shifts by 0, 1, 2 ... places: all first words, then all second ones.
-// Shifts are lanes here: eight synapses at a time fill a byte of each.
-void GatherRow(const std::uint8_t* bits, const std::int32_t* at, std::span<std::uint64_t> words) {
-  constexpr std::size_t kLanes = 64;
-  const std::size_t shifts = words.size() / kWords;
-  std::fill(words.begin(), words.end(), 0);
-  for (std::size_t begin = 0; begin < shifts; begin += kLanes) {
-    const std::size_t lanes = std::min(kLanes, shifts - begin);
-    for (std::size_t byte = 0; byte < kSynapses / 8; ++byte) {
-      std::array<std::uint8_t, kLanes> filled{};
-      for (std::size_t i = 0; i < 8; ++i) {
-        const std::uint8_t* from = bits + at[8 * byte + i] + begin;
-        for (std::size_t x = 0; x < lanes; ++x) {
-          filled[x] = static_cast<std::uint8_t>(filled[x] | from[x] << i);
-        }
-      }
-      std::uint64_t* to = &words[byte / 8 * shifts + begin];
-      for (std::size_t x = 0; x < lanes; ++x) to[x] |= std::uint64_t{filled[x]} << byte % 8 * 8;
-    }
   }
 }
 
@@ -194,6 +173,7 @@ void InvariantEncoder::Look(const cv::Mat& image, Pixel reach) {
   for (int scale = 0; options_.blur && scale < options_.blur_scales; ++scale, blur *= 2) {
     for (const cv::Mat& channel : channels) AddPlane(channel, blur);
   }
+  PackBits(rising_, packed_);
 }
 
 std::ptrdiff_t InvariantEncoder::Moved(Pixel shift) const {
@@ -203,30 +183,49 @@ std::ptrdiff_t InvariantEncoder::Moved(Pixel shift) const {
   return std::ptrdiff_t{by.y} * (width_ + 2 * margin_.x) + by.x;
 }
 
-void InvariantEncoder::EncodeRow(std::span<const Pixel> shifts,
-                                 std::span<std::vector<std::uint64_t>> patterns) const {
-  const std::ptrdiff_t first = Moved(shifts.front());
-  bool neighbours = options_.cells == Cells::kGradient;
-  for (std::size_t i = 0; i < shifts.size(); ++i) {
-    neighbours = neighbours && Moved(shifts[i]) == first + static_cast<std::ptrdiff_t>(i);
+// Bits of neighbouring pixels lie side by side, so one read of a word tells what a synapse sees
+// under many shifts; turning a square of bits around makes them patterns.
+void InvariantEncoder::GatherAll(std::span<const std::ptrdiff_t> moved,
+                                 std::span<std::uint64_t> patterns) const {
+  const std::size_t shifts = moved.size();
+  std::vector<std::size_t> begins;  // of runs of shifts that one read takes in
+  for (std::size_t i = 0; i < shifts; ++i) {
+    const bool within = !begins.empty() && moved[i] >= moved[begins.back()] &&
+                        moved[i] - moved[begins.back()] < kReach;
+    if (!within) begins.push_back(i);
   }
-  if (!neighbours) {
-    for (std::size_t i = 0; i < shifts.size(); ++i) Encode(shifts[i], patterns[i]);
-    return;
+  begins.push_back(shifts);
+  const auto neurons = static_cast<std::int64_t>(offsets_.size()) / kSynapses;
+  pool_.For(neurons, 16, [&](std::int64_t from, std::int64_t to) {
+    BitSquare square;
+    for (auto row = static_cast<std::size_t>(from * kWords);
+         row < static_cast<std::size_t>(to * kWords); ++row) {
+      const std::int32_t* at = offsets_.data() + row * 64;
+      std::uint64_t* words = patterns.data() + row * shifts;
+      for (std::size_t run = 0; run + 1 < begins.size(); ++run) {
+        const std::ptrdiff_t first = moved[begins[run]];
+        ReadSquare(packed_.data(), at, first, square);
+        Transpose(square);
+        for (std::size_t i = begins[run]; i < begins[run + 1]; ++i) {
+          words[i] = square[static_cast<std::size_t>(moved[i] - first)];
+        }
+      }
+    }
+  });
+}
+
+void InvariantEncoder::EncodeAll(std::span<const Pixel> shifts,
+                                 std::span<std::uint64_t> patterns) const {
+  if (options_.cells == Cells::kGradient) {
+    std::vector<std::ptrdiff_t> moved;
+    for (const Pixel shift : shifts) moved.push_back(Moved(shift));
+    return GatherAll(moved, patterns);
   }
-  pool_.For(static_cast<std::int64_t>(offsets_.size()) / kSynapses, 64,
-            [&](std::int64_t begin, std::int64_t end) {
-              std::vector<std::uint64_t> words(kWords * shifts.size());
-              for (std::int64_t n = begin; n < end; ++n) {
-                GatherRow(rising_.data() + first, offsets_.data() + n * kSynapses, words);
-                for (std::size_t i = 0; i < shifts.size(); ++i) {
-                  for (std::size_t w = 0; w < kWords; ++w) {
-                    patterns[i][static_cast<std::size_t>(n) * kWords + w] =
-                        words[w * shifts.size() + i];
-                  }
-                }
-              }
-            });
+  std::vector<std::uint64_t> pattern(patterns.size() / shifts.size());
+  for (std::size_t d = 0; d < shifts.size(); ++d) {
+    Encode(shifts[d], pattern);
+    for (std::size_t i = 0; i < pattern.size(); ++i) patterns[i * shifts.size() + d] = pattern[i];
+  }
 }
 
 void InvariantEncoder::Encode(Pixel shift, std::span<std::uint64_t> pattern) const {

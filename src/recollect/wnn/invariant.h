@@ -30,14 +30,14 @@ class InvariantEncoder {
   // The pattern of that image displaced by `shift`, pixels of the image as it was given; its
   // border is repeated where that leaves it. Writes neurons x kWords words.
   void Encode(Pixel shift, std::span<std::uint64_t> pattern) const;
-  // The same under several shifts of one y, in rising order of x; patterns of the right size.
-  void EncodeRow(std::span<const Pixel> shifts,
-                 std::span<std::vector<std::uint64_t>> patterns) const;
+  // The same under many shifts, ordered by y, then by x. Writes [neuron][word][shift].
+  void EncodeAll(std::span<const Pixel> shifts, std::span<std::uint64_t> patterns) const;
 
  private:
   Pixel Working(Pixel shift) const;
   std::ptrdiff_t Moved(Pixel shift) const;  // in a plane, by a shift of the image
   void SetMargin(Pixel margin);
+  void GatherAll(std::span<const std::ptrdiff_t> moved, std::span<std::uint64_t> patterns) const;
   void AddPlane(const cv::Mat& channel, double blur);
   void AddGradients(const cv::Mat& padded);
 
@@ -54,6 +54,7 @@ class InvariantEncoder {
   // [plane][row][column]: values or, for gradients, whether they rise to the right, and then down.
   std::vector<std::int32_t> values_;
   std::vector<std::uint8_t> rising_;
+  std::vector<std::uint8_t> packed_;  // the same, eight a byte
 };
 
 }  // namespace recollect::wnn

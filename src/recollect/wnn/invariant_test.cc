@@ -88,17 +88,17 @@ TEST(Invariant, ADisplacedImageIsFoundUnderItsDisplacement) {
   const cv::Mat motion = (cv::Mat_<double>(2, 3) << 1, 0, -16, 0, 1, 8);
   cv::Mat live;
   cv::warpAffine(scene, live, motion, scene.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  const auto patterns = encoder.EncodeDisplaced(View(live), encoder.displacements());
+  const DisplacedPatterns patterns = encoder.EncodeDisplaced(View(live), encoder.displacements());
   const Displacements grid = encoder.displacements();
   ASSERT_EQ(grid.columns, 9);
   ASSERT_EQ(grid.rows, 5);
   const auto learnt = encoder.Encode(View(scene));
-  std::size_t nearest = 0;
-  for (std::size_t d = 0; d < patterns.size(); ++d) {
-    if (Change(patterns[d], learnt) < Change(patterns[nearest], learnt)) nearest = d;
+  int nearest = 0;
+  for (int d = 0; d < grid.count(); ++d) {
+    if (Change(patterns.Under(d), learnt) < Change(patterns.Under(nearest), learnt)) nearest = d;
   }
-  EXPECT_EQ(nearest % 9, 4u - 2u);
-  EXPECT_EQ(nearest / 9, 2u + 1u);
+  EXPECT_EQ(nearest % 9, 4 - 2);
+  EXPECT_EQ(nearest / 9, 2 + 1);
 
   const Recollection found = RecollectImage(memory, encoder, View(live), pool);
   EXPECT_EQ(found.winner, 7);
@@ -123,15 +123,14 @@ TEST(Invariant, RowsOfDisplacementsAreTheSameAsEachAlone) {
       const cv::Mat scene = Scene(2, width, 200);
       Encoder encoder(options, width, 200, pool);
       const Displacements grid = encoder.closer_displacements();
-      const auto patterns = encoder.EncodeDisplaced(View(scene), grid);
+      const DisplacedPatterns patterns = encoder.EncodeDisplaced(View(scene), grid);
       for (int d = 0; d < grid.count(); ++d) {
         const auto pixels = [&](int steps) {
           return static_cast<int>(std::lround(steps * grid.step * width / 640.0));
         };
         const Pixel shift{pixels(d % grid.columns - grid.columns / 2),
                           pixels(d / grid.columns - grid.rows / 2)};
-        ASSERT_EQ(patterns[static_cast<std::size_t>(d)], encoder.Encode(View(scene), shift))
-            << width << " " << d;
+        ASSERT_EQ(patterns.Under(d), encoder.Encode(View(scene), shift)) << width << " " << d;
       }
     }
   }

@@ -85,6 +85,7 @@ Displacements CloserDisplacementsOf(const NetworkOptions& options) {
 
 Synapses::Synapses(const NetworkOptions& options, int image_width, int image_height) {
   Check(options, image_width, image_height);
+  neurons_x_ = options.neurons_x;
   width_ = image_width;
   height_ =
       std::min(image_height, static_cast<int>(std::lround(image_width * options.window_aspect)));

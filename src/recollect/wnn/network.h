@@ -81,6 +81,8 @@ class Synapses {
   Synapses(const NetworkOptions& options, int image_width, int image_height);
 
   int neurons() const { return static_cast<int>(grid_.size()); }
+  int neurons_x() const { return neurons_x_; }  // columns and rows of the grid
+  int neurons_y() const { return neurons() / neurons_x_; }
   int window_width() const { return width_; }  // the top rows of the image that are looked at
   int window_height() const { return height_; }
 
@@ -94,6 +96,7 @@ class Synapses {
   }
 
  private:
+  int neurons_x_;
   int width_, height_;
   double step_x_, step_y_;     // window pixels a neuron
   std::vector<Pixel> grid_;    // by neuron

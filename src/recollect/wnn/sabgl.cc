@@ -85,4 +85,16 @@ std::vector<float> MeanDistances(const Memory& memory, std::span<const std::uint
   return mean;
 }
 
+std::vector<float> DisplacedDistances(const Memory& memory, Encoder& encoder,
+                                      const ImageView& image, ThreadPool& pool) {
+  const Displacements grid = encoder.displacements();
+  const DisplacedPatterns& live = encoder.EncodeDisplaced(image, grid);
+  std::vector<float> least = MeanDistances(memory, live.Under(0), pool);
+  for (int d = 1; d < grid.count(); ++d) {
+    const std::vector<float> other = MeanDistances(memory, live.Under(d), pool);
+    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], other[i]);
+  }
+  return least;
+}
+
 }  // namespace recollect::wnn

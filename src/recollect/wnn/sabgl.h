@@ -3,9 +3,14 @@
 #include <deque>
 #include <vector>
 
+#include "recollect/wnn/encoder.h"
 #include "recollect/wnn/sequence.h"
 
 namespace recollect::wnn {
+
+// MeanDistances of the image, for every entry under the displacement that makes it least.
+std::vector<float> DisplacedDistances(const Memory& memory, Encoder& encoder,
+                                      const ImageView& image, ThreadPool& pool);
 
 // SABGL (Forechi et al. 2016), online. Every sequence of the last 1, 2, ... n images is warped onto
 // the laps (subsequence dynamic time warping over mean Hamming distances, steps (0,1), (1,0),

@@ -201,6 +201,30 @@ TEST(Calibration, ProbabilitiesAreThoseOfNewImages) {
   EXPECT_THROW(Calibrate(route, {}), Error);
 }
 
+TEST(Calibration, ImagesThatGoWrongTogetherTellLessInASequence) {
+  const Route route = ChainRoute(kPlaces);
+  // One image in three speaks for a place 20 further on; eight in a row, or any of them.
+  const auto fit = [&](bool together) {
+    Random random(8);
+    std::vector<Trial> trials;
+    for (int lap = 0; lap < 6; ++lap) {
+      for (int i = 0; i < kPlaces; ++i) {
+        const bool wrong = together ? i / 8 % 3 == 2 : random.Uniform() < 1.0 / 3;
+        Trial trial{Votes(wrong ? (i + 20) % kPlaces : i, random), kNeurons, {}, {}, i};
+        for (int p = 0; p < kPlaces; ++p) {
+          if (route.WithinOne(i, p)) trial.right.push_back(p);
+        }
+        trials.push_back(trial);
+      }
+    }
+    return Calibrate(route, trials);
+  };
+  const Calibration together = fit(true), apart = fit(false);
+  EXPECT_LT(together.sequence.trust + together.sequence.sharpness,
+            apart.sequence.trust + apart.sequence.sharpness);
+  EXPECT_GT(together.sequence.trust, 0);
+}
+
 TEST(Precision, CurveOfAKnownRanking) {
   const std::vector<double> scores = {0.9, 0.8, 0.7, 0.6};
   const PrecisionCurve curve = MakePrecisionCurve(scores, {true, true, false, true});
