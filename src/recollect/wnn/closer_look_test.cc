@@ -90,7 +90,7 @@ TEST(CloserLook, TellsViewsOfOneSceneApart) {
     return right;
   };
   const int coarse = right(0), closer = right(4);
-  EXPECT_GE(closer, 15);
+  EXPECT_GE(closer, 17);
   EXPECT_GT(closer, coarse);
 }
 
