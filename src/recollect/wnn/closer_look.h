@@ -16,7 +16,8 @@ namespace recollect::wnn {
 // The committee's second look: at a few entries only, but under displacements of the live image
 // finer than a search of the whole memory can afford. A neuron votes for every entry that lies
 // nearer to what it sees than entries usually do by kNearDeviations standard deviations, under the
-// displacement that it shares with the others, give or take one step. See docs/recognition.md, "A closer look".
+// displacement that it shares with the others, give or take one step. See docs/recognition.md, "A
+// closer look".
 
 inline constexpr double kNearDeviations = 3;
 
