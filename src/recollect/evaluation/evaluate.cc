@@ -7,16 +7,20 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/image.h"
 #include "recollect/dataset/sampling.h"
+#include "recollect/evaluation/failures.h"
 #include "recollect/evaluation/trust.h"
 
 namespace recollect {
 namespace {
 
 constexpr int kMaximumAllowedErrors[] = {0, 1, 2, 3, 5, 10};
+
+constexpr int kPictureWidth = 320;
 
 // A fix further in time from an image than this says nothing of it.
 constexpr double kMaxFixAge = 0.25;
@@ -162,6 +166,10 @@ Evaluation Evaluate(Localizer& localizer, const Lap& live, const EvaluationOptio
     if (geometry) {
       const auto verified = localizer.Verify(image, std::span(&frame.nearest_key_frame, 1));
       if (verified) frame.pnp_oracle = judge(verified->world_from_camera);
+    }
+    if (geometry && IsFailure(frame.answer, judge(frame.answer.world_from_camera))) {
+      cv::resize(image, frame.picture, {kPictureWidth, kPictureWidth * image.rows / image.cols}, 0,
+                 0, cv::INTER_AREA);
     }
     result.frames.push_back(frame);
     Report(progress, "localise", static_cast<std::int64_t>(i + 1),

@@ -51,6 +51,7 @@ struct LiveFrame {
   Localization answer;
   std::optional<PoseError> system, oracle_cnn, pnp_oracle;  // see Row; none: it was not asked
   std::string fault;     // what EvaluationOptions::spoil did to the image; empty: there is none
+  cv::Mat picture;       // the live image made small, of failures only (failures.h)
   int error_frames = 0;  // |frames| between this one and that nearest to the recollected key frame
   int error_labels = 0;  // |places| between this one's and the recollected key frame's
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
 #include "recollect/dataset/image.h"
+#include "recollect/evaluation/failures.h"
 #include "recollect/evaluation/report.h"
 #include "recollect/evaluation/trust.h"
 #include "recollect/matching/mapped.h"
@@ -191,6 +193,16 @@ TEST_F(EvaluateTest, NothingIsKnownFromACameraThatHangs) {
     EXPECT_EQ(e.faults.at("hangs").localised > 0, !drive);
     EXPECT_EQ(ToFigures(e)["faults"]["hangs"]["frames"], 4);
     EXPECT_NE(FormatTable(e).find("hangs"), std::string::npos);
+    // A row each of the failures, three pictures wide.
+    const auto failures = static_cast<int>(std::count_if(
+        e.frames.begin(), e.frames.end(), [](const LiveFrame& f) { return !f.picture.empty(); }));
+    const fs::path sheet = folder_ / (drive ? "drive.jpg" : "single.jpg");
+    EXPECT_EQ(WriteFailures(e, map, sheet), failures);
+    EXPECT_EQ(fs::exists(sheet), failures > 0);
+    EXPECT_GE(failures, drive ? 4 : 0);
+    if (failures > 0) {
+      EXPECT_GT(ReadColour(sheet).cols, 3 * 320);
+    }
   }
 }
 

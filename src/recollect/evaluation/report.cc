@@ -7,6 +7,7 @@
 
 #include "recollect/core/files.h"
 #include "recollect/dataset/trajectory_io.h"
+#include "recollect/evaluation/failures.h"
 
 namespace recollect {
 namespace {
@@ -177,6 +178,7 @@ void WriteReport(const Evaluation& e, const Map& map, const std::filesystem::pat
   WriteFramesCsv(e, folder / "frames.csv");
   WriteTrajectories(e, folder);
   PlotEvaluation(e, map, folder / "evaluation.png");
+  WriteFailures(e, map, folder / "failures.jpg");
 }
 
 }  // namespace recollect

@@ -28,8 +28,8 @@ void PlotEvaluation(const Evaluation& evaluation, const Map& map, const std::fil
 // truth.kitti of a folder.
 void WriteTrajectories(const Evaluation& evaluation, const std::filesystem::path& folder);
 
-// All of it into a folder: evaluation.png, table.txt, figures.json, frames.csv and the
-// trajectories.
+// All of it into a folder: evaluation.png, table.txt, figures.json, frames.csv, the trajectories
+// and, where geometry took part and some answers are not to be relied on, failures.jpg.
 void WriteReport(const Evaluation& evaluation, const Map& map, const std::filesystem::path& folder);
 
 }  // namespace recollect
