@@ -21,7 +21,7 @@ PixelGrid::PixelGrid(const PinholeCamera& camera, const Features& features)
 
 void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
-                 const SE3& pose, double radius, double likeness, GuidedMatches& matches) {
+                 const SE3& pose, double radius, double likeness, std::vector<Observation>& matches) {
   const SE3 live_from_key = pose.Inverse() * world_from_keyframe;
   // By feature: the most alike landmark so far.
   std::vector<std::pair<int, int>> best(static_cast<std::size_t>(live.size()), {-1, -1});
@@ -56,29 +56,27 @@ void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
     const auto at = static_cast<std::size_t>(j);
     if (best[at].first < 0) continue;
     const Landmark& l = landmarks.points[static_cast<std::size_t>(best[at].first)];
-    matches.observations.push_back({world_from_keyframe * l.p_keyframe,
-                                    r * l.Covariance(camera) * r.transpose(), live.pixels[at],
-                                    PixelSigma(static_cast<double>(live.sizes[at]))});
-    matches.features.push_back(j);
+    matches.push_back({world_from_keyframe * l.p_keyframe,
+                       r * l.Covariance(camera) * r.transpose(), live.pixels[at],
+                       PixelSigma(static_cast<double>(live.sizes[at])), j});
   }
 }
 
-void ShareFeatures(const Features& live, GuidedMatches& matches) {
+void ShareFeatures(const Features& live, std::vector<Observation>& matches) {
   std::vector<int> sharers(static_cast<std::size_t>(live.size()), 0);
-  for (const int feature : matches.features) ++sharers[static_cast<std::size_t>(feature)];
-  for (std::size_t i = 0; i < matches.features.size(); ++i) {
-    matches.observations[i].pixel_sigma *=
-        std::sqrt(sharers[static_cast<std::size_t>(matches.features[i])]);
+  for (const Observation& one : matches) ++sharers[static_cast<std::size_t>(one.feature)];
+  for (Observation& one : matches) {
+    one.pixel_sigma *= std::sqrt(sharers[static_cast<std::size_t>(one.feature)]);
   }
 }
 
-void CountSupport(const PinholeCamera& camera, const Features& live, const GuidedMatches& matches,
+void CountSupport(const PinholeCamera& camera, const Features& live, const std::vector<Observation>& matches,
                   const std::vector<double>& deviations, int& support, double& spread) {
   constexpr int kColumns = 8, kRows = 6;
   std::vector<char> seen(static_cast<std::size_t>(live.size()), 0), cells(kColumns * kRows, 0);
-  for (std::size_t i = 0; i < matches.features.size(); ++i) {
+  for (std::size_t i = 0; i < matches.size(); ++i) {
     if (deviations[i] > 3) continue;
-    const auto feature = static_cast<std::size_t>(matches.features[i]);
+    const auto feature = static_cast<std::size_t>(matches[i].feature);
     seen[feature] = 1;
     const Eigen::Vector2d& p = live.pixels[feature];
     const int x = std::clamp(static_cast<int>(p.x() * kColumns / camera.width), 0, kColumns - 1);

@@ -32,26 +32,20 @@ class PixelGrid {
   std::vector<std::vector<int>> cells_;
 };
 
-// Observations and which feature of the live image each is of.
-struct GuidedMatches {
-  std::vector<Observation> observations;
-  std::vector<int> features;
-};
-
 // Appends the landmarks of a key frame that the live image, taken from about `pose`, shows within
 // `radius` pixels of their prediction: each with its most alike feature, and each feature with its
 // most alike landmark of this key frame.
 void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
-                 const SE3& pose, double radius, double likeness, GuidedMatches& matches);
+                 const SE3& pose, double radius, double likeness, std::vector<Observation>& matches);
 
 // Several landmarks seen in one feature share its error: it is scaled so that together they know
 // no more of it than one would.
-void ShareFeatures(const Features& live, GuidedMatches& matches);
+void ShareFeatures(const Features& live, std::vector<Observation>& matches);
 
 // Features with at least one observation within three standard deviations, and the share of the
 // image's cells they are in.
-void CountSupport(const PinholeCamera& camera, const Features& live, const GuidedMatches& matches,
+void CountSupport(const PinholeCamera& camera, const Features& live, const std::vector<Observation>& matches,
                   const std::vector<double>& deviations, int& support, double& spread);
 
 }  // namespace recollect::matching

@@ -10,8 +10,10 @@
 namespace recollect::matching {
 namespace {
 
-// 95 % of a chi-squared variable of six degrees of freedom lie below.
-constexpr double kChi2Of6 = 12.592;
+// Of the answers that count as sure some twentieth may be grossly wrong on hard laps, so the scale is
+// taken where nine of ten lie; that many of a chi-squared variable of six degrees of freedom lie
+// below the second figure.
+constexpr double kShare = 0.9, kChi2Of6 = 10.645;
 constexpr int kFewest = 20;  // answers from which a quantile is taken
 
 }  // namespace
@@ -75,7 +77,7 @@ Calibration CalibrateGeometry(const Map& map, ThreadPool& pool, int max_images,
   Calibration result{images, static_cast<int>(squared.size()), 0};
   if (result.sure < kFewest) return result;
   std::sort(squared.begin(), squared.end());
-  const auto at = static_cast<std::size_t>(std::ceil(0.95 * (result.sure + 1))) - 1;
+  const auto at = static_cast<std::size_t>(std::ceil(kShare * (result.sure + 1))) - 1;
   result.inflation = std::sqrt(squared[std::min(at, squared.size() - 1)] / kChi2Of6);
   return result;
 }

@@ -2,12 +2,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace recollect::matching {
 namespace {
 
+constexpr double kExpectedFeatures = 20;
 constexpr double kNearest = 0.1;  // metres before the camera; nearer points say nothing
 
 // d projection / d p_camera.
@@ -40,6 +43,7 @@ Eigen::Matrix<double, 2, 6> PoseJacobian(const Eigen::Matrix<double, 2, 3>& proj
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
+  std::vector<Vector6d> gradients;  // each observation's part
 };
 
 NormalEquations Linearise(std::span<const Observation> observations, const PinholeCamera& camera,
@@ -48,10 +52,12 @@ NormalEquations Linearise(std::span<const Observation> observations, const Pinho
   NormalEquations sum;
   const SE3 camera_from_world = pose.Inverse();
   deviations.clear();
+  sum.gradients.reserve(observations.size());
   for (const Observation& o : observations) {
     const Eigen::Vector3d p = camera_from_world * o.p_world;
     if (p.z() < kNearest) {
       deviations.push_back(std::numeric_limits<double>::infinity());
+      sum.gradients.push_back(Vector6d::Zero());
       continue;
     }
     const Eigen::Matrix<double, 2, 3> projection = ProjectionJacobian(camera, p);
@@ -63,7 +69,8 @@ NormalEquations Linearise(std::span<const Observation> observations, const Pinho
     const double weight = 1 / (1 + squared / (options.robust_scale * options.robust_scale));
     const Eigen::Matrix<double, 6, 2> weighed = weight * jacobian.transpose() * information;
     sum.hessian += weighed * jacobian;
-    sum.gradient += weighed * r;
+    sum.gradients.push_back(weighed * r);
+    sum.gradient += sum.gradients.back();
   }
   return sum;
 }
@@ -74,6 +81,33 @@ void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
   const Matrix6d information = prior.covariance.inverse();
   sum.hessian += information;
   sum.gradient += information * off;
+}
+
+// The covariance of the sum of the gradients as they scatter from feature to feature, and as if some
+// features more had scattered as the Hessian says: few tell little of six dimensions.
+Matrix6d Scatter(std::span<const Observation> observations, const NormalEquations& sum) {
+  std::vector<std::size_t> order(observations.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto feature = [&](std::size_t i) { return observations[i].feature; };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return feature(a) < feature(b); });
+  Matrix6d scatter = Matrix6d::Zero();
+  double features = 0;
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    Vector6d together = sum.gradients[order[begin]];
+    for (end = begin + 1; end < order.size() && feature(order[begin]) >= 0 &&
+                          feature(order[end]) == feature(order[begin]);
+         ++end) {
+      together += sum.gradients[order[end]];
+    }
+    if (together.isZero(0)) continue;  // behind the camera
+    scatter += together * together.transpose();
+    ++features;
+  }
+  // Six of the residuals' degrees of freedom were spent on the pose.
+  const double spent = features / std::max(1.0, features - 6);
+  return (features * spent * scatter + kExpectedFeatures * sum.hessian) /
+         (features + kExpectedFeatures);
 }
 
 }  // namespace
@@ -93,11 +127,18 @@ std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
   for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
     NormalEquations sum =
         Linearise(observations, camera, result.world_from_camera, options, result.deviations);
+    const bool last = result.converged || iteration == options.max_iterations;
+    Matrix6d scatter;
+    if (last) scatter = Scatter(observations, sum);
     if (prior) AddPrior(*prior, result.world_from_camera, sum);
     const Eigen::LDLT<Matrix6d> ldlt(sum.hessian);
     if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-12)) return std::nullopt;
-    result.covariance = ldlt.solve(Matrix6d::Identity());
-    if (result.converged || iteration == options.max_iterations) break;
+    if (last) {
+      if (prior) scatter += prior->covariance.inverse();
+      const Matrix6d inverse = ldlt.solve(Matrix6d::Identity());
+      result.covariance = inverse * scatter * inverse;
+      break;
+    }
     const Vector6d step = -ldlt.solve(sum.gradient);
     if (!step.allFinite()) return std::nullopt;
     result.world_from_camera = result.world_from_camera * SE3::Exp(step);

@@ -16,6 +16,7 @@ struct Observation {
   Eigen::Matrix3d covariance_world = Eigen::Matrix3d::Zero();  // of p_world, m^2
   Eigen::Vector2d pixel;
   double pixel_sigma = 1;  // of `pixel`
+  int feature = -1;        // of the live image; those of one feature err together; -1: by itself
 };
 
 // What is known of the pose beforehand; its mean is world_from_camera, its covariance as in
@@ -50,6 +51,10 @@ Eigen::Vector2d Residual(const Observation& observation, const PinholeCamera& ca
 // `start`. Each residual is weighed by its own covariance: that of the pixel and that of the point
 // as the live camera sees it. nullopt where the observations do not fix all six degrees of freedom
 // or none lies before the camera.
+//
+// The covariance rests on how far the residuals really scatter, feature by feature (the sandwich of
+// Huber 1967, by clusters), rather than on how far they were told to: what errs together, or more or
+// less than was thought, is counted as it is. The fewer features, the more it leans on the latter.
 std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
                                       const PinholeCamera& camera, const SE3& start,
                                       const RefineOptions& options = {},

@@ -232,18 +232,18 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
   SE3 pose = world_from_camera;
   const PixelGrid grid(map.camera, live);
   std::optional<RefinedPose> refined;
-  GuidedMatches matches;
+  std::vector<Observation> matches;
   for (const double radius : options.guided_px) {
-    matches = {};
+    matches.clear();
     for (const int key : Near(map, pose, options.refine_pool_m, options.refine_pool)) {
       MatchGuided(map.camera, PoseOf(map, key), map.landmarks(key), live, grid, pose, radius,
                   options.guided_likeness, matches);
     }
-    if (static_cast<int>(matches.observations.size()) < options.min_matches) return std::nullopt;
+    if (static_cast<int>(matches.size()) < options.min_matches) return std::nullopt;
     ShareFeatures(live, matches);
     // Matches are looked for again from the first round's pose: it need not be the very last word.
     const RefineOptions refine{.max_iterations = radius == options.guided_px[1] ? 15 : 5};
-    refined = RefinePose(matches.observations, map.camera, pose, refine, prior);
+    refined = RefinePose(matches, map.camera, pose, refine, prior);
     if (!refined) return std::nullopt;
     pose = refined->world_from_camera;
   }
