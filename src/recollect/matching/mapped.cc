@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -10,10 +12,11 @@
 namespace recollect::matching {
 namespace {
 
-// Of the answers that count as sure some twentieth may be grossly wrong on hard laps, so the scale is
-// taken where nine of ten lie; that many of a chi-squared variable of six degrees of freedom lie
-// below the second figure.
-constexpr double kShare = 0.9, kChi2Of6 = 10.645;
+// Below the second figure lies the first one's share of a chi-squared variable of six degrees of
+// freedom. One far quantile of some hundred answers rests on a handful of them: it is the mean of
+// several.
+constexpr std::pair<double, double> kChi2Of6[] = {
+    {0.90, 10.645}, {0.91, 10.948}, {0.92, 11.283}, {0.93, 11.660}, {0.94, 12.088}, {0.95, 12.592}};
 constexpr int kFewest = 20;  // answers from which a quantile is taken
 
 }  // namespace
@@ -77,14 +80,18 @@ Calibration CalibrateGeometry(const Map& map, ThreadPool& pool, int max_images,
   Calibration result{images, static_cast<int>(squared.size()), 0};
   if (result.sure < kFewest) return result;
   std::sort(squared.begin(), squared.end());
-  const auto at = static_cast<std::size_t>(std::ceil(kShare * (result.sure + 1))) - 1;
-  result.inflation = std::sqrt(squared[std::min(at, squared.size() - 1)] / kChi2Of6);
+  double logs = 0;
+  for (const auto& [share, chi2] : kChi2Of6) {
+    const auto at = static_cast<std::size_t>(std::ceil(share * (result.sure + 1))) - 1;
+    logs += std::log(squared[std::min(at, squared.size() - 1)] / chi2) / 2;
+  }
+  result.inflation = std::exp(logs / static_cast<double>(std::size(kChi2Of6)));
   return result;
 }
 
 Calibration CalibrateMap(const std::filesystem::path& file, ThreadPool& pool,
                          const ProgressSink& progress) {
-  const Calibration calibration = CalibrateGeometry(Map::Open(file), pool, 150, progress);
+  const Calibration calibration = CalibrateGeometry(Map::Open(file), pool, 300, progress);
   SetGeometryInflation(file, calibration.inflation);
   return calibration;
 }

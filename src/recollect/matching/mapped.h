@@ -21,9 +21,9 @@ struct Calibration {
 
 // Localises a map's own key frames by geometry, each without what its own lap gave to the map
 // (without itself alone where there is one lap only), and measures by how much the errors of sure
-// answers exceed their covariance: inflated, the 90 % ellipsoid holds 90 % of them.
+// answers exceed their covariance: the 95 % ellipsoid, inflated, holds 95 % of them.
 // max_images: evenly spread over the map.
-Calibration CalibrateGeometry(const Map& map, ThreadPool& pool, int max_images = 150,
+Calibration CalibrateGeometry(const Map& map, ThreadPool& pool, int max_images = 300,
                               const ProgressSink& progress = {});
 
 // Does that for the map in a file, and writes the result into it.

@@ -1,5 +1,6 @@
 #include "recollect/matching/verify.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -233,7 +234,8 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
   const PixelGrid grid(map.camera, live);
   std::optional<RefinedPose> refined;
   std::vector<Observation> matches;
-  for (const double radius : options.guided_px) {
+  for (int round = 0; round < options.guided_rounds; ++round) {
+    const double radius = options.guided_px[round == 0 ? 0 : 1];
     matches.clear();
     for (const int key : Near(map, pose, options.refine_pool_m, options.refine_pool)) {
       MatchGuided(map.camera, PoseOf(map, key), map.landmarks(key), live, grid, pose, radius,
@@ -242,10 +244,13 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
     if (static_cast<int>(matches.size()) < options.min_matches) return std::nullopt;
     ShareFeatures(live, matches);
     // Matches are looked for again from the first round's pose: it need not be the very last word.
-    const RefineOptions refine{.max_iterations = radius == options.guided_px[1] ? 15 : 5};
+    const RefineOptions refine{.max_iterations = round == 0 ? 5 : 15};
     refined = RefinePose(matches, map.camera, pose, refine, prior);
     if (!refined) return std::nullopt;
+    // Other matches may move the pose further, until it moves less than it is unsure by.
+    const Vector6d moved = (pose.Inverse() * refined->world_from_camera).Log();
     pose = refined->world_from_camera;
+    if (round > 0 && moved.dot(refined->covariance.ldlt().solve(moved)) < 1) break;
   }
   Verified result;
   result.world_from_camera = pose;

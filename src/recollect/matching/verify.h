@@ -29,7 +29,8 @@ struct VerifyOptions {
   int repeat_support = 25;
   double repeat_ratio = 2;
   double expected_m = 20, expected_px = 60;  // how far off an expected pose may be
-  double guided_px[2] = {16, 7};  // how far from its prediction a landmark is looked for, by round
+  double guided_px[2] = {16, 7};  // how far from its prediction a landmark is looked for: first, then
+  int guided_rounds = 5;          // at most
   double guided_likeness = 0.68;  // cosine between descriptors, at least
 };
 
