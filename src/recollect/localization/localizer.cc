@@ -15,9 +15,6 @@
 namespace recollect {
 namespace {
 
-// What a network or a drive predicts is further off than what geometry finds by itself.
-constexpr double kWideSearchPx = 30;
-
 constexpr std::size_t kVotesKept = 5;
 
 // Within three standard deviations, in position.
@@ -225,8 +222,9 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   answer.place = answer.key_frame;
   answer.key_frame = recollected;
   const Stopwatch step;
-  const auto together = matching::RefineFrom(frames_, live, answer.world_from_camera, Wide(),
-                                             NetworkPrior(answer.world_from_camera));
+  const auto together =
+      matching::RefineFrom(frames_, live, answer.world_from_camera, options_.verify,
+                           NetworkPrior(answer.world_from_camera));
   answer.ms.verify += step.Milliseconds();
   if (together && (!verified || together->support > verified->support)) {
     Take(*together, Relative::kFused, answer);
@@ -235,12 +233,6 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   } else {
     answer.state = State::kLost;
   }
-}
-
-matching::VerifyOptions Localizer::Wide() const {
-  matching::VerifyOptions wide = options_.verify;
-  wide.guided_px[0] = kWideSearchPx;
-  return wide;
 }
 
 void Localizer::Take(const matching::Verified& verified, Relative carried_by,

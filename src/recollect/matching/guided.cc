@@ -21,7 +21,8 @@ PixelGrid::PixelGrid(const PinholeCamera& camera, const Features& features)
 
 void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
-                 const SE3& pose, double radius, double likeness, std::vector<Observation>& matches) {
+                 const SE3& pose, double radius, double likeness,
+                 std::vector<Observation>& matches) {
   const SE3 live_from_key = pose.Inverse() * world_from_keyframe;
   // By feature: the most alike landmark so far.
   std::vector<std::pair<int, int>> best(static_cast<std::size_t>(live.size()), {-1, -1});
@@ -56,9 +57,8 @@ void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
     const auto at = static_cast<std::size_t>(j);
     if (best[at].first < 0) continue;
     const Landmark& l = landmarks.points[static_cast<std::size_t>(best[at].first)];
-    matches.push_back({world_from_keyframe * l.p_keyframe,
-                       r * l.Covariance(camera) * r.transpose(), live.pixels[at],
-                       PixelSigma(static_cast<double>(live.sizes[at])), j});
+    matches.push_back({world_from_keyframe * l.p_keyframe, r * l.Covariance(camera) * r.transpose(),
+                       live.pixels[at], PixelSigma(static_cast<double>(live.sizes[at])), j});
   }
 }
 
@@ -70,8 +70,9 @@ void ShareFeatures(const Features& live, std::vector<Observation>& matches) {
   }
 }
 
-void CountSupport(const PinholeCamera& camera, const Features& live, const std::vector<Observation>& matches,
-                  const std::vector<double>& deviations, int& support, double& spread) {
+void CountSupport(const PinholeCamera& camera, const Features& live,
+                  const std::vector<Observation>& matches, const std::vector<double>& deviations,
+                  int& support, double& spread) {
   constexpr int kColumns = 8, kRows = 6;
   std::vector<char> seen(static_cast<std::size_t>(live.size()), 0), cells(kColumns * kRows, 0);
   for (std::size_t i = 0; i < matches.size(); ++i) {

@@ -37,7 +37,8 @@ class PixelGrid {
 // most alike landmark of this key frame.
 void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
-                 const SE3& pose, double radius, double likeness, std::vector<Observation>& matches);
+                 const SE3& pose, double radius, double likeness,
+                 std::vector<Observation>& matches);
 
 // Several landmarks seen in one feature share its error: it is scaled so that together they know
 // no more of it than one would.
@@ -45,7 +46,8 @@ void ShareFeatures(const Features& live, std::vector<Observation>& matches);
 
 // Features with at least one observation within three standard deviations, and the share of the
 // image's cells they are in.
-void CountSupport(const PinholeCamera& camera, const Features& live, const std::vector<Observation>& matches,
-                  const std::vector<double>& deviations, int& support, double& spread);
+void CountSupport(const PinholeCamera& camera, const Features& live,
+                  const std::vector<Observation>& matches, const std::vector<double>& deviations,
+                  int& support, double& spread);
 
 }  // namespace recollect::matching

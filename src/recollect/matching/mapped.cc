@@ -15,8 +15,8 @@ namespace {
 // Below the second figure lies the first one's share of a chi-squared variable of six degrees of
 // freedom. One far quantile of some hundred answers rests on a handful of them: it is the mean of
 // several.
-constexpr std::pair<double, double> kChi2Of6[] = {
-    {0.90, 10.645}, {0.91, 10.948}, {0.92, 11.283}, {0.93, 11.660}, {0.94, 12.088}, {0.95, 12.592}};
+constexpr std::pair<double, double> kChi2Of6[] = {{0.90, 10.645}, {0.91, 10.948}, {0.92, 11.283},
+                                                  {0.93, 11.660}, {0.94, 12.088}, {0.95, 12.592}};
 constexpr int kFewest = 20;  // answers from which a quantile is taken
 
 }  // namespace

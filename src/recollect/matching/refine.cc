@@ -83,8 +83,8 @@ void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
   sum.gradient += information * off;
 }
 
-// The covariance of the sum of the gradients as they scatter from feature to feature, and as if some
-// features more had scattered as the Hessian says: few tell little of six dimensions.
+// The covariance of the sum of the gradients as they scatter from feature to feature, and as if
+// some features more had scattered as the Hessian says: few tell little of six dimensions.
 Matrix6d Scatter(std::span<const Observation> observations, const NormalEquations& sum) {
   std::vector<std::size_t> order(observations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -29,7 +29,9 @@ struct VerifyOptions {
   int repeat_support = 25;
   double repeat_ratio = 2;
   double expected_m = 20, expected_px = 60;  // how far off an expected pose may be
-  double guided_px[2] = {16, 7};  // how far from its prediction a landmark is looked for: first, then
+  // How far from its prediction a landmark is looked for: at first, where a narrow look would only
+  // confirm a pose that is half a metre off, and then.
+  double guided_px[2] = {60, 7};
   int guided_rounds = 5;          // at most
   double guided_likeness = 0.68;  // cosine between descriptors, at least
 };
