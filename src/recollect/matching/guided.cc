@@ -19,7 +19,7 @@ PixelGrid::PixelGrid(const PinholeCamera& camera, const Features& features)
   }
 }
 
-void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
+void MatchGuided(const PinholeCamera& camera, int key_frame, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
                  const SE3& pose, double radius, double likeness,
                  std::vector<Observation>& matches) {
@@ -58,7 +58,8 @@ void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
     if (best[at].first < 0) continue;
     const Landmark& l = landmarks.points[static_cast<std::size_t>(best[at].first)];
     matches.push_back({world_from_keyframe * l.p_keyframe, r * l.Covariance(camera) * r.transpose(),
-                       live.pixels[at], PixelSigma(static_cast<double>(live.sizes[at])), j});
+                       live.pixels[at], PixelSigma(static_cast<double>(live.sizes[at])), j,
+                       key_frame});
   }
 }
 

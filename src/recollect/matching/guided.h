@@ -35,7 +35,7 @@ class PixelGrid {
 // Appends the landmarks of a key frame that the live image, taken from about `pose`, shows within
 // `radius` pixels of their prediction: each with its most alike feature, and each feature with its
 // most alike landmark of this key frame.
-void MatchGuided(const PinholeCamera& camera, const SE3& world_from_keyframe,
+void MatchGuided(const PinholeCamera& camera, int key_frame, const SE3& world_from_keyframe,
                  const Landmarks& landmarks, const Features& live, const PixelGrid& grid,
                  const SE3& pose, double radius, double likeness,
                  std::vector<Observation>& matches);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace recollect::matching {
 namespace {
@@ -83,31 +84,41 @@ void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
   sum.gradient += information * off;
 }
 
-// The covariance of the sum of the gradients as they scatter from feature to feature, and as if
-// some features more had scattered as the Hessian says: few tell little of six dimensions.
-Matrix6d Scatter(std::span<const Observation> observations, const NormalEquations& sum) {
+// The covariance of the sum of the gradients, as they scatter from cluster to cluster (see
+// Observation; -1 is a cluster by itself), and how many clusters there are.
+std::pair<Matrix6d, double> Scatter(std::span<const Observation> observations,
+                                    const std::vector<Vector6d>& gradients,
+                                    int Observation::*cluster) {
   std::vector<std::size_t> order(observations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto feature = [&](std::size_t i) { return observations[i].feature; };
+  const auto of = [&](std::size_t i) { return observations[i].*cluster; };
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return feature(a) < feature(b); });
+                   [&](std::size_t a, std::size_t b) { return of(a) < of(b); });
   Matrix6d scatter = Matrix6d::Zero();
-  double features = 0;
+  double clusters = 0;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    Vector6d together = sum.gradients[order[begin]];
-    for (end = begin + 1; end < order.size() && feature(order[begin]) >= 0 &&
-                          feature(order[end]) == feature(order[begin]);
-         ++end) {
-      together += sum.gradients[order[end]];
+    Vector6d together = gradients[order[begin]];
+    for (end = begin + 1;
+         end < order.size() && of(order[begin]) >= 0 && of(order[end]) == of(order[begin]); ++end) {
+      together += gradients[order[end]];
     }
     if (together.isZero(0)) continue;  // behind the camera
     scatter += together * together.transpose();
-    ++features;
+    ++clusters;
   }
-  // Six of the residuals' degrees of freedom were spent on the pose.
-  const double spent = features / std::max(1.0, features - 6);
-  return (features * spent * scatter + kExpectedFeatures * sum.hessian) /
-         (features + kExpectedFeatures);
+  // Six of the degrees of freedom were spent on the pose.
+  return {scatter * (clusters / std::max(1.0, clusters - 6)), clusters};
+}
+
+// Few features tell little of six dimensions: it is as if some more had scattered as the Hessian
+// says.
+Matrix6d Scatter(std::span<const Observation> observations, const NormalEquations& sum) {
+  const auto [by_feature, features] = Scatter(observations, sum.gradients, &Observation::feature);
+  Matrix6d scatter =
+      (features * by_feature + kExpectedFeatures * sum.hessian) / (features + kExpectedFeatures);
+  const bool mapped = !observations.empty() && observations.front().key_frame >= 0;
+  if (mapped) scatter += Scatter(observations, sum.gradients, &Observation::key_frame).first;
+  return scatter;
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ struct Observation {
   Eigen::Matrix3d covariance_world = Eigen::Matrix3d::Zero();  // of p_world, m^2
   Eigen::Vector2d pixel;
   double pixel_sigma = 1;  // of `pixel`
-  int feature = -1;        // of the live image; those of one feature err together; -1: by itself
+  // Of the live image, and of the map: observations of one err together; -1: each by itself.
+  int feature = -1, key_frame = -1;
 };
 
 // What is known of the pose beforehand; its mean is world_from_camera, its covariance as in

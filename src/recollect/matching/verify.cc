@@ -238,7 +238,7 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
     const double radius = options.guided_px[round == 0 ? 0 : 1];
     matches.clear();
     for (const int key : Near(map, pose, options.refine_pool_m, options.refine_pool)) {
-      MatchGuided(map.camera, PoseOf(map, key), map.landmarks(key), live, grid, pose, radius,
+      MatchGuided(map.camera, key, PoseOf(map, key), map.landmarks(key), live, grid, pose, radius,
                   options.guided_likeness, matches);
     }
     if (static_cast<int>(matches.size()) < options.min_matches) return std::nullopt;
