@@ -224,7 +224,7 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   const Stopwatch step;
   const auto together =
       matching::RefineFrom(frames_, live, answer.world_from_camera, options_.verify,
-                           NetworkPrior(answer.world_from_camera));
+                           NetworkPrior(answer.world_from_camera), &pool_);
   answer.ms.verify += step.Milliseconds();
   if (together && (!verified || together->support > verified->support)) {
     Take(*together, Relative::kFused, answer);

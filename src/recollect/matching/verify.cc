@@ -189,9 +189,11 @@ std::size_t Choose(const std::vector<Hypothesis>& hypotheses, const VerifyOption
 
 // The pose that a hypothesis leads to.
 std::optional<Verified> Settle(const MappedFrames& map, const Features& live,
-                               const Hypothesis& hypothesis, const VerifyOptions& options) {
+                               const Hypothesis& hypothesis, const VerifyOptions& options,
+                               ThreadPool* pool) {
   if (hypothesis.support < options.min_matches) return std::nullopt;
-  std::optional<Verified> result = RefineFrom(map, live, hypothesis.world_from_camera, options);
+  std::optional<Verified> result =
+      RefineFrom(map, live, hypothesis.world_from_camera, options, {}, pool);
   if (!result) return std::nullopt;
   result->key_frame = hypothesis.key_frame;
   result->agreed = hypothesis.support;
@@ -206,7 +208,8 @@ std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& 
                                        ThreadPool* pool) {
   const std::vector<int> nearest = Near(map, expected, options.expected_m, 1);
   if (nearest.empty()) return std::nullopt;
-  return Settle(map, live, Propose(map, live, nearest, options, pool, &expected).front(), options);
+  return Settle(map, live, Propose(map, live, nearest, options, pool, &expected).front(), options,
+                pool);
 }
 
 std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& live,
@@ -216,7 +219,7 @@ std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& li
       Propose(map, live, Places(map, proposals, options), options, pool);
   if (hypotheses.empty()) return std::nullopt;
   const Hypothesis& best = hypotheses[Choose(hypotheses, options)];
-  std::optional<Verified> result = Settle(map, live, best, options);
+  std::optional<Verified> result = Settle(map, live, best, options, pool);
   if (!result) return std::nullopt;
   for (const Hypothesis& one : hypotheses) {
     // Two proposals may well lead to one pose.
@@ -229,7 +232,7 @@ std::optional<Verified> VerifyPlaces(const MappedFrames& map, const Features& li
 
 std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live,
                                    const SE3& world_from_camera, const VerifyOptions& options,
-                                   const std::optional<PosePrior>& prior) {
+                                   const std::optional<PosePrior>& prior, ThreadPool* pool) {
   SE3 pose = world_from_camera;
   const PixelGrid grid(map.camera, live);
   std::optional<RefinedPose> refined;
@@ -237,10 +240,14 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
   for (int round = 0; round < options.guided_rounds; ++round) {
     const double radius = options.guided_px[round == 0 ? 0 : 1];
     matches.clear();
-    for (const int key : Near(map, pose, options.refine_pool_m, options.refine_pool)) {
+    const std::vector<int> keys = Near(map, pose, options.refine_pool_m, options.refine_pool);
+    std::vector<std::vector<Observation>> parts(keys.size());
+    ForEach(pool, keys.size(), [&](std::size_t i) {
+      const int key = keys[i];
       MatchGuided(map.camera, key, PoseOf(map, key), map.landmarks(key), live, grid, pose, radius,
-                  options.guided_likeness, matches);
-    }
+                  options.guided_likeness, parts[i]);
+    });
+    for (const auto& part : parts) matches.insert(matches.end(), part.begin(), part.end());
     if (static_cast<int>(matches.size()) < options.min_matches) return std::nullopt;
     ShareFeatures(live, matches);
     // Matches are looked for again from the first round's pose: it need not be the very last word.

@@ -77,7 +77,8 @@ std::optional<Verified> VerifyExpected(const MappedFrames& map, const Features& 
 // far as its covariance says.
 std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live,
                                    const SE3& world_from_camera, const VerifyOptions& options = {},
-                                   const std::optional<PosePrior>& prior = {});
+                                   const std::optional<PosePrior>& prior = {},
+                                   ThreadPool* pool = nullptr);
 
 // When a pose may be relied on. Chance agreement of wrong matches is what these bounds keep out.
 struct SureOptions {
