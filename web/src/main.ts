@@ -55,20 +55,20 @@ function show(run: Run) {
     section(
       'route',
       'Along the route',
-      'Point at an image to see it beside the key frame that the committee recollected.',
+      `Each point is one of the ${run.images} images: point at it to see it beside the key frame that the committee recollected.`,
       el('div', { class: 'beside' }, charts.plan.element, inspector.element),
       charts.along.element,
     ),
     section(
       'places',
       'Place recognition',
-      `${count(places.count)} places, one every ${places.spacing_m} m; weightless network “${dataset.recogniser}”.`,
+      `${count(places.count)} places, one every ${places.spacing_m} m of ${run.images} laps; weightless network “${dataset.recogniser}”.`,
       charts.accuracy.element,
       tables.places(run),
     ),
     section('training', 'Relative pose: training', trained(run), ...(charts.training ? [charts.training.element] : [])),
     section('data', 'Data', `The map holds ${count(dataset.key_frames)} key frames, one every ${dataset.spacing_m} m of each mapped lap.`, tables.dataset(run)),
-    section('latency', 'Latency', 'As measured in this run.', charts.latency.element),
+    section('latency', 'Latency', `As measured in this run, on ${run.images} images.`, charts.latency.element),
   );
   const started = Object.entries(charts).flatMap(([name, chart]) => (chart ? [[name, chart.start()]] : []));
   // For tests: the charts by name, and how long the page took.

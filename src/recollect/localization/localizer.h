@@ -121,7 +121,7 @@ class Localizer {
   std::vector<int> Propose(const wnn::Recollection& recollection);
   // The rest of RelateByGeometry, once verification is not sure.
   void RelateTogether(const cv::Mat& image, const matching::Features& live, int likeliest,
-                      Localization& answer);  // for poses that are only about right
+                      Localization& answer);
   void Take(const matching::Verified& verified, Relative carried_by, Localization& answer) const;
   matching::PosePrior NetworkPrior(const SE3& world_from_camera) const;
 
