@@ -53,10 +53,10 @@ Eigen::Vector2d Residual(const Observation& observation, const PinholeCamera& ca
 // as the live camera sees it. nullopt where the observations do not fix all six degrees of freedom
 // or none lies before the camera.
 //
-// The covariance rests on how far the residuals really scatter, feature by feature (the sandwich of
-// Huber 1967, by clusters), rather than on how far they were told to: what errs together, or more
-// or less than was thought, is counted as it is. The fewer features, the more it leans on the
-// latter.
+// The covariance rests on how far the residuals really scatter, from feature to feature and from
+// key frame to key frame (the sandwich of Huber 1967, by clusters), rather than on how far they
+// were told to: what errs together, or more or less than was thought, is counted as it is. The
+// fewer features, the more it leans on the latter.
 std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
                                       const PinholeCamera& camera, const SE3& start,
                                       const RefineOptions& options = {},

@@ -127,6 +127,27 @@ TEST(RefinePose, CovarianceHoldsWhereFeaturesErrTogetherAndMoreThanWasTold) {
   EXPECT_LT(mean, 12);  // the inverse Hessian alone makes it 96
 }
 
+// All landmarks of a key frame are displaced alike, as by an error of its own pose.
+TEST(RefinePose, CovarianceHoldsWhereKeyFramesErrAsAWhole) {
+  Random random(8);
+  const auto mean = [&](bool told) {
+    return MeanSquaredDeviation(random, [&](const SE3& pose) {
+      std::vector<Observation> seen;
+      for (int key = 0; key < 10; ++key) {
+        const auto part = Look(pose, 40, 0.5, random);
+        const Eigen::Vector3d error(random.Normal(), random.Normal(), random.Normal());
+        for (Observation o : part) {
+          o.p_world += 0.1 * error;
+          if (told) o.key_frame = key;
+          seen.push_back(o);
+        }
+      }
+      return seen;
+    });
+  };
+  EXPECT_LT(mean(true), mean(false) / 4);
+}
+
 TEST(RefinePose, RefusesWhatDoesNotFixAPose) {
   Random random(5);
   const SE3 truth = SomePose(random);
