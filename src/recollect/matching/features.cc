@@ -1,13 +1,11 @@
 #include "recollect/matching/features.h"
 
 #include <algorithm>
-#include <cmath>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
-#include <tuple>
 
 #include "recollect/core/error.h"
 #include "recollect/matching/describe.h"
+#include "recollect/matching/points.h"
 
 namespace recollect::matching {
 
@@ -27,32 +25,21 @@ Features FindFeatures(const cv::Mat& gray, const FeatureOptions& options) {
   cv::Mat small;
   cv::resize(gray, small, {}, scale, scale, cv::INTER_AREA);
   if (options.clahe > 0) cv::createCLAHE(options.clahe, {8, 8})->apply(small, small);
-  const auto sift = cv::SIFT::create(0, kLayers, options.contrast, 10, kBaseSigma);
-  std::vector<cv::KeyPoint> points;
-  sift->detect(small, points);
-  // One of the copies that SIFT makes of a point with several orientations; here it has none.
-  const auto order = [](const cv::KeyPoint& p) {
-    return std::tuple(-p.response, p.pt.x, p.pt.y, p.size);
-  };
-  std::sort(points.begin(), points.end(),
-            [&](const cv::KeyPoint& a, const cv::KeyPoint& b) { return order(a) < order(b); });
-  points.erase(std::unique(points.begin(), points.end(),
-                           [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
-                             return a.pt == b.pt && a.size == b.size;
-                           }),
-               points.end());
-  if (static_cast<int>(points.size()) > options.count) {
-    points.resize(static_cast<std::size_t>(options.count));
-  }
+  const ScaleSpace space(small);
+  std::vector<ScalePoint> points = FindPoints(space, options.contrast);
+  points.resize(std::min(points.size(), static_cast<std::size_t>(options.count)));
 
   Features features;
-  features.descriptors = Describe(small, points);
-  const double sx = static_cast<double>(small.cols) / gray.cols;
-  const double sy = static_cast<double>(small.rows) / gray.rows;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    features.pixels.emplace_back((points[i].pt.x + 0.5) / sx - 0.5,
-                                 (points[i].pt.y + 0.5) / sy - 0.5);
-    features.sizes.push_back(static_cast<float>(points[i].size / sx));
+  features.descriptors = Describe(space, points);
+  const double sx = static_cast<double>(gray.cols) / small.cols;
+  const double sy = static_cast<double>(gray.rows) / small.rows;
+  for (const ScalePoint& point : points) {
+    const double x = ScaleSpace::ToImage(point.octave, static_cast<double>(point.x));
+    const double y = ScaleSpace::ToImage(point.octave, static_cast<double>(point.y));
+    features.pixels.emplace_back((x + 0.5) * sx - 0.5, (y + 0.5) * sy - 0.5);
+    const double diameter =
+        2 * ScaleSpace::PixelSize(point.octave) * static_cast<double>(point.sigma);
+    features.sizes.push_back(static_cast<float>(diameter * sx));
   }
   return features;
 }

@@ -8,33 +8,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "recollect/core/error.h"
-#include "recollect/core/random.h"
 #include "recollect/matching/describe.h"
 #include "recollect/matching/match.h"
+#include "recollect/matching/test_images.h"
 
 namespace recollect::matching {
 namespace {
-
-// Blobs of all sizes.
-cv::Mat Blobs(int width, int height, std::uint64_t seed) {
-  Random random(seed);
-  cv::Mat image(height, width, CV_8UC1, cv::Scalar(110));
-  for (int i = 0; i < width * height / 250; ++i) {
-    const cv::Point centre(static_cast<int>(random.Index(width)),
-                           static_cast<int>(random.Index(height)));
-    const int radius = 1 + static_cast<int>(std::exp(random.Uniform(0, 3)));
-    cv::ellipse(image, centre, {radius, 1 + radius / 2}, random.Uniform(0, 180), 0, 360,
-                cv::Scalar(random.Uniform(0, 255)), cv::FILLED, cv::LINE_AA);
-  }
-  return image;
-}
-
-std::vector<cv::KeyPoint> Upright(const cv::Mat& image) {
-  std::vector<cv::KeyPoint> points;
-  cv::SIFT::create(0, kLayers, 0.01, 10, kBaseSigma)->detect(image, points);
-  for (cv::KeyPoint& point : points) point.angle = 0;
-  return points;
-}
 
 double Cosine(const std::int8_t* a, const std::int8_t* b) {
   return Likeness(a, b) / std::sqrt(static_cast<double>(Likeness(a, a)) * Likeness(b, b));
@@ -42,11 +21,19 @@ double Cosine(const std::int8_t* a, const std::int8_t* b) {
 
 TEST(Describe, IsMuchLikeUprightRootSift) {
   const cv::Mat image = Blobs(320, 240, 5);
-  std::vector<cv::KeyPoint> points = Upright(image);
+  const ScaleSpace space(image);
+  const std::vector<ScalePoint> points = FindPoints(space, 0.01);
   ASSERT_GT(points.size(), 100u);
-  const auto ours = Describe(image, points);
+  const auto ours = Describe(space, points);
+  // The same points as OpenCV numbers octaves, the doubled image being -1.
+  std::vector<cv::KeyPoint> upright;
+  for (const ScalePoint& p : points) {
+    const auto pixel = static_cast<float>(ScaleSpace::PixelSize(p.octave));
+    upright.emplace_back(pixel * p.x, pixel * p.y, 2 * pixel * p.sigma, 0.0f, p.contrast,
+                         ((p.octave - 1) & 255) | (p.layer << 8));
+  }
   cv::Mat theirs;
-  cv::SIFT::create()->compute(image, points, theirs);
+  cv::SIFT::create()->compute(image, upright, theirs);
   ASSERT_EQ(ours.size(), static_cast<std::size_t>(theirs.rows * kDescriptorBytes));
   std::vector<double> cosines;
   for (int i = 0; i < theirs.rows; ++i) {
@@ -65,12 +52,12 @@ TEST(Describe, IsMuchLikeUprightRootSift) {
 }
 
 TEST(Describe, IsTheSameWhateverTheThreads) {
-  const cv::Mat image = Blobs(320, 240, 6);
-  const std::vector<cv::KeyPoint> points = Upright(image);
-  const auto many = Describe(image, points);
+  const ScaleSpace space(Blobs(320, 240, 6));
+  const std::vector<ScalePoint> points = FindPoints(space, 0.01);
+  const auto many = Describe(space, points);
   const int threads = cv::getNumThreads();
   cv::setNumThreads(1);
-  const auto one = Describe(image, points);
+  const auto one = Describe(space, points);
   cv::setNumThreads(threads);
   EXPECT_EQ(one, many);
 }

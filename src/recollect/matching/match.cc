@@ -5,15 +5,7 @@
 
 #include "recollect/matching/features.h"
 #include "recollect/matching/kernel.h"
-
-// The compiler makes one variant an instruction set, and the loader chooses: before sanitizers are
-// ready, which therefore watch the plain one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define RECOLLECT_VARIANTS __attribute__((target_clones("arch=icelake-server", "avx2", "default")))
-#else
-#define RECOLLECT_VARIANTS
-#endif
+#include "recollect/matching/variants.h"
 
 namespace recollect::matching {
 namespace {
