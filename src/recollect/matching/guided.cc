@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "recollect/matching/build_landmarks.h"
 #include "recollect/matching/match.h"
@@ -9,13 +10,35 @@
 namespace recollect::matching {
 
 PixelGrid::PixelGrid(const PinholeCamera& camera, const Features& features)
-    : columns_(camera.width / kCell + 1), rows_(camera.height / kCell + 1) {
-  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+    : features_(features),
+      columns_(camera.width / kCell + 1),
+      rows_(camera.height / kCell + 1),
+      order_(static_cast<std::size_t>(features.size())),
+      first_(static_cast<std::size_t>(columns_ * rows_) + 1) {
+  std::vector<int> cells;
+  for (const Eigen::Vector2d& p : features.pixels) {
+    cells.push_back(Cell(p.y(), rows_) * columns_ + Cell(p.x(), columns_));
+    ++first_[static_cast<std::size_t>(cells.back()) + 1];
+  }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::vector<int> next = first_;
   for (int i = 0; i < features.size(); ++i) {
-    const Eigen::Vector2d& p = features.pixels[static_cast<std::size_t>(i)];
-    const int x = std::clamp(static_cast<int>(p.x() / kCell), 0, columns_ - 1);
-    const int y = std::clamp(static_cast<int>(p.y() / kCell), 0, rows_ - 1);
-    cells_[static_cast<std::size_t>(y * columns_ + x)].push_back(i);
+    const int cell = cells[static_cast<std::size_t>(i)];
+    order_[static_cast<std::size_t>(next[static_cast<std::size_t>(cell)]++)] = i;
+  }
+}
+
+void PixelGrid::Around(const Eigen::Vector2d& pixel, double radius, std::vector<int>& found) const {
+  const int left = Cell(pixel.x() - radius, columns_), right = Cell(pixel.x() + radius, columns_);
+  const int top = Cell(pixel.y() - radius, rows_), bottom = Cell(pixel.y() + radius, rows_);
+  for (int y = top; y <= bottom; ++y) {
+    const auto from = static_cast<std::size_t>(y * columns_ + left);
+    const auto to = static_cast<std::size_t>(y * columns_ + right + 1);
+    for (int i = first_[from]; i < first_[to]; ++i) {
+      const int feature = order_[static_cast<std::size_t>(i)];
+      const Eigen::Vector2d& at = features_.pixels[static_cast<std::size_t>(feature)];
+      if ((at - pixel).squaredNorm() <= radius * radius) found.push_back(feature);
+    }
   }
 }
 
@@ -26,24 +49,23 @@ void MatchGuided(const PinholeCamera& camera, int key_frame, const SE3& world_fr
   const SE3 live_from_key = pose.Inverse() * world_from_keyframe;
   // By feature: the most alike landmark so far.
   std::vector<std::pair<int, int>> best(static_cast<std::size_t>(live.size()), {-1, -1});
+  std::vector<int> near, likenesses;
   for (int i = 0; i < landmarks.size(); ++i) {
     const Eigen::Vector3d p =
         live_from_key * landmarks.points[static_cast<std::size_t>(i)].p_keyframe;
     if (p.z() < 0.5) continue;
     const Eigen::Vector2d predicted = camera.Project(p);
     if (!camera.Contains(predicted)) continue;
+    near.clear();
+    grid.Around(predicted, radius, near);
+    if (near.empty()) continue;
     const std::int8_t* descriptor = landmarks.descriptors.data() + i * kDescriptorBytes;
+    likenesses.resize(near.size());
+    Likenesses(descriptor, live.descriptors.data(), near, likenesses.data());
+    const auto best_of_all = std::max_element(likenesses.begin(), likenesses.end());
+    const int most = *best_of_all;
+    const int feature = near[static_cast<std::size_t>(best_of_all - likenesses.begin())];
     const int own_norm = Likeness(descriptor, descriptor);
-    int feature = -1, most = -1;
-    grid.Around(predicted, radius, [&](int j) {
-      if ((live.pixels[static_cast<std::size_t>(j)] - predicted).norm() > radius) return;
-      const int like = Likeness(descriptor, live.Descriptor(j));
-      if (like > most) {
-        most = like;
-        feature = j;
-      }
-    });
-    if (feature < 0) continue;
     const int its_norm = Likeness(live.Descriptor(feature), live.Descriptor(feature));
     if (most < likeness * std::sqrt(static_cast<double>(own_norm) * its_norm)) continue;
     auto& [landmark, so_far] = best[static_cast<std::size_t>(feature)];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "recollect/matching/features.h"
@@ -12,24 +13,19 @@ namespace recollect::matching {
 class PixelGrid {
  public:
   PixelGrid(const PinholeCamera& camera, const Features& features);
-  // Calls visit(i) for every feature of the cells that a circle touches.
-  template <typename Visit>
-  void Around(const Eigen::Vector2d& pixel, double radius, const Visit& visit) const {
-    const auto cell = [](double at, int cells) {
-      return std::min(std::max(static_cast<int>(at / kCell), 0), cells - 1);
-    };
-    for (int y = cell(pixel.y() - radius, rows_); y <= cell(pixel.y() + radius, rows_); ++y) {
-      for (int x = cell(pixel.x() - radius, columns_); x <= cell(pixel.x() + radius, columns_);
-           ++x) {
-        for (const int i : cells_[static_cast<std::size_t>(y * columns_ + x)]) visit(i);
-      }
-    }
-  }
+  // Appends the features at most `radius` pixels from there.
+  void Around(const Eigen::Vector2d& pixel, double radius, std::vector<int>& found) const;
 
  private:
   static constexpr int kCell = 16;
+  int Cell(double at, int cells) const {
+    return std::clamp(static_cast<int>(at / kCell), 0, cells - 1);
+  }
+
+  const Features& features_;
   int columns_, rows_;
-  std::vector<std::vector<int>> cells_;
+  std::vector<int> order_;  // features, cell by cell
+  std::vector<int> first_;  // of a cell, in order_; one more than there are cells
 };
 
 // Appends the landmarks of a key frame that the live image, taken from about `pose`, shows within

@@ -50,9 +50,20 @@ std::vector<int> SquaredNorms(const std::int8_t* descriptors, int count, int siz
 }  // namespace
 
 RECOLLECT_VARIANTS
+void Likenesses(const std::int8_t* one, const std::int8_t* descriptors, std::span<const int> others,
+                int* out) {
+  for (const int other : others) {
+    const std::int8_t* its = descriptors + static_cast<std::ptrdiff_t>(other) * kDescriptorBytes;
+    int sum = 0;
+    for (int k = 0; k < kDescriptorBytes; ++k) sum += one[k] * its[k];
+    *out++ = sum;
+  }
+}
+
 int Likeness(const std::int8_t* a, const std::int8_t* b) {
   int sum = 0;
-  for (int k = 0; k < kDescriptorBytes; ++k) sum += a[k] * b[k];
+  constexpr int kFirst[] = {0};
+  Likenesses(a, b, kFirst, &sum);
   return sum;
 }
 

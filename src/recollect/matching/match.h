@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace recollect::matching {
@@ -17,6 +18,9 @@ struct MatchOptions {
 
 // Inner product of two descriptors (kDescriptorBytes each); Distance is between them.
 int Likeness(const std::int8_t* a, const std::int8_t* b);
+// Of one with each of `others`, numbers of descriptors that lie one after the other.
+void Likenesses(const std::int8_t* one, const std::int8_t* descriptors, std::span<const int> others,
+                int* out);
 double Distance(int likeness, int norm2_a, int norm2_b);
 
 // Pairs that are each other's most alike and pass the ratio test on the live side. Descriptors lie

@@ -41,37 +41,50 @@ Eigen::Matrix<double, 2, 6> PoseJacobian(const Eigen::Matrix<double, 2, 3>& proj
   return jacobian;
 }
 
+// Of each observation, as a camera at about `pose` sees it.
+std::vector<Eigen::Matrix2d> Informations(std::span<const Observation> observations,
+                                          const PinholeCamera& camera, const SE3& pose) {
+  const SE3 camera_from_world = pose.Inverse();
+  std::vector<Eigen::Matrix2d> informations;
+  informations.reserve(observations.size());
+  for (const Observation& o : observations) {
+    Eigen::Vector3d p = camera_from_world * o.p_world;
+    p.z() = std::max(p.z(), kNearest);
+    informations.push_back(
+        Information(o, ProjectionJacobian(camera, p), camera_from_world.rotation()));
+  }
+  return informations;
+}
+
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
-  std::vector<Vector6d> gradients;  // each observation's part
 };
 
-NormalEquations Linearise(std::span<const Observation> observations, const PinholeCamera& camera,
-                          const SE3& pose, const RefineOptions& options,
-                          std::vector<double>& deviations) {
+// gradients: each observation's part, where asked for.
+NormalEquations Linearise(std::span<const Observation> observations,
+                          const std::vector<Eigen::Matrix2d>& informations,
+                          const PinholeCamera& camera, const SE3& pose,
+                          const RefineOptions& options, std::vector<double>& deviations,
+                          std::vector<Vector6d>* gradients) {
   NormalEquations sum;
   const SE3 camera_from_world = pose.Inverse();
-  deviations.clear();
-  sum.gradients.reserve(observations.size());
-  for (const Observation& o : observations) {
+  deviations.assign(observations.size(), std::numeric_limits<double>::infinity());
+  if (gradients != nullptr) gradients->assign(observations.size(), Vector6d::Zero());
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& o = observations[i];
     const Eigen::Vector3d p = camera_from_world * o.p_world;
-    if (p.z() < kNearest) {
-      deviations.push_back(std::numeric_limits<double>::infinity());
-      sum.gradients.push_back(Vector6d::Zero());
-      continue;
-    }
-    const Eigen::Matrix<double, 2, 3> projection = ProjectionJacobian(camera, p);
-    const Eigen::Matrix<double, 2, 6> jacobian = PoseJacobian(projection, p);
+    if (p.z() < kNearest) continue;
+    const Eigen::Matrix<double, 2, 6> jacobian = PoseJacobian(ProjectionJacobian(camera, p), p);
     const Eigen::Vector2d r = camera.Project(p) - o.pixel;
-    const Eigen::Matrix2d information = Information(o, projection, camera_from_world.rotation());
-    const double squared = r.dot(information * r);
-    deviations.push_back(std::sqrt(squared));
+    const double squared = r.dot(informations[i] * r);
+    deviations[i] = std::sqrt(squared);
     const double weight = 1 / (1 + squared / (options.robust_scale * options.robust_scale));
-    const Eigen::Matrix<double, 6, 2> weighed = weight * jacobian.transpose() * information;
+    const Eigen::Matrix<double, 6, 2> weighed = weight * jacobian.transpose() * informations[i];
+    const Vector6d gradient = weighed * r;
     sum.hessian += weighed * jacobian;
-    sum.gradients.push_back(weighed * r);
-    sum.gradient += sum.gradients.back();
+    sum.gradient += gradient;
+    if (gradients != nullptr) (*gradients)[i] = gradient;
   }
   return sum;
 }
@@ -112,12 +125,13 @@ std::pair<Matrix6d, double> Scatter(std::span<const Observation> observations,
 
 // Few features tell little of six dimensions: it is as if some more had scattered as the Hessian
 // says.
-Matrix6d Scatter(std::span<const Observation> observations, const NormalEquations& sum) {
-  const auto [by_feature, features] = Scatter(observations, sum.gradients, &Observation::feature);
+Matrix6d Scatter(std::span<const Observation> observations, const Matrix6d& hessian,
+                 const std::vector<Vector6d>& gradients) {
+  const auto [by_feature, features] = Scatter(observations, gradients, &Observation::feature);
   Matrix6d scatter =
-      (features * by_feature + kExpectedFeatures * sum.hessian) / (features + kExpectedFeatures);
+      (features * by_feature + kExpectedFeatures * hessian) / (features + kExpectedFeatures);
   const bool mapped = !observations.empty() && observations.front().key_frame >= 0;
-  if (mapped) scatter += Scatter(observations, sum.gradients, &Observation::key_frame).first;
+  if (mapped) scatter += Scatter(observations, gradients, &Observation::key_frame).first;
   return scatter;
 }
 
@@ -135,12 +149,14 @@ std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
                                       const RefineOptions& options,
                                       const std::optional<PosePrior>& prior) {
   RefinedPose result{start, {}, {}, false};
+  const auto informations = Informations(observations, camera, start);
+  std::vector<Vector6d> gradients;
   for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
-    NormalEquations sum =
-        Linearise(observations, camera, result.world_from_camera, options, result.deviations);
     const bool last = result.converged || iteration == options.max_iterations;
+    NormalEquations sum = Linearise(observations, informations, camera, result.world_from_camera,
+                                    options, result.deviations, last ? &gradients : nullptr);
     Matrix6d scatter;
-    if (last) scatter = Scatter(observations, sum);
+    if (last) scatter = Scatter(observations, sum.hessian, gradients);
     if (prior) AddPrior(*prior, result.world_from_camera, sum);
     const Eigen::LDLT<Matrix6d> ldlt(sum.hessian);
     if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-12)) return std::nullopt;
@@ -153,7 +169,8 @@ std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
     const Vector6d step = -ldlt.solve(sum.gradient);
     if (!step.allFinite()) return std::nullopt;
     result.world_from_camera = result.world_from_camera * SE3::Exp(step);
-    result.converged = step.head<3>().norm() < 1e-6 && step.tail<3>().norm() < 1e-5;
+    // As the Hessian has it, the step's length in standard deviations.
+    result.converged = -step.dot(sum.gradient) < options.smallest_step * options.smallest_step;
   }
   return result;
 }

@@ -29,6 +29,7 @@ struct PosePrior {
 
 struct RefineOptions {
   int max_iterations = 15;
+  double smallest_step = 0.003;  // in standard deviations of the pose; a shorter one is the last
   // Cauchy's scale, in standard deviations: residuals much beyond it are told to be wrong matches.
   double robust_scale = 2;
 };
@@ -50,8 +51,8 @@ Eigen::Vector2d Residual(const Observation& observation, const PinholeCamera& ca
 
 // Maximum of the posterior by Gauss-Newton with iteratively reweighted residuals (Cauchy), from
 // `start`. Each residual is weighed by its own covariance: that of the pixel and that of the point
-// as the live camera sees it. nullopt where the observations do not fix all six degrees of freedom
-// or none lies before the camera.
+// as a camera at `start` sees it. nullopt where the observations do not fix all six degrees of
+// freedom or none lies before the camera.
 //
 // The covariance rests on how far the residuals really scatter, from feature to feature and from
 // key frame to key frame (the sandwich of Huber 1967, by clusters), rather than on how far they

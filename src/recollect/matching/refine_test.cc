@@ -92,7 +92,7 @@ double MeanSquaredDeviation(Random& random, const Look& look) {
   constexpr int kTrials = 300;
   for (int trial = 0; trial < kTrials; ++trial) {
     const SE3 truth = SomePose(random);
-    const auto found = RefinePose(look(truth), kCamera, truth, {15, 50});
+    const auto found = RefinePose(look(truth), kCamera, truth, {.robust_scale = 50});
     if (!found) return -1;
     const Vector6d xi = (found->world_from_camera.Inverse() * truth).Log();
     sum += xi.dot(found->covariance.ldlt().solve(xi));
