@@ -29,7 +29,7 @@ struct PosePrior {
 
 struct RefineOptions {
   int max_iterations = 15;
-  double smallest_step = 0.003;  // in standard deviations of the pose; a shorter one is the last
+  double smallest_step = 0.01;  // in standard deviations of the pose; a shorter one is the last
   // Cauchy's scale, in standard deviations: residuals much beyond it are told to be wrong matches.
   double robust_scale = 2;
 };

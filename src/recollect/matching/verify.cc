@@ -71,8 +71,8 @@ PlaceMatches MatchKeyFrame(const MappedFrames& map, const Features& live, int pl
   PlaceMatches result;
   const Landmarks landmarks = map.landmarks(key);
   for (const Match& m :
-       MatchDescriptors(live.descriptors.data(), live.size(), landmarks.descriptors.data(),
-                        landmarks.size(), options.match)) {
+       MatchDescriptors(live.descriptors.data(), std::min(live.size(), options.features),
+                        landmarks.descriptors.data(), landmarks.size(), options.match)) {
     const Eigen::Vector3d p =
         place_from_key * landmarks.points[static_cast<std::size_t>(m.mapped)].p_keyframe;
     const Eigen::Vector2d& pixel = live.pixels[static_cast<std::size_t>(m.live)];
@@ -238,9 +238,11 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
   std::optional<RefinedPose> refined;
   std::vector<Observation> matches;
   for (int round = 0; round < options.guided_rounds; ++round) {
-    const double radius = options.guided_px[round == 0 ? 0 : 1];
+    const std::size_t stage = round == 0 ? 0 : 1;
+    const double radius = options.guided_px[stage];
     matches.clear();
-    const std::vector<int> keys = Near(map, pose, options.refine_pool_m, options.refine_pool);
+    const std::vector<int> keys =
+        Near(map, pose, options.refine_pool_m, options.guided_keys[stage]);
     std::vector<std::vector<Observation>> parts(keys.size());
     ForEach(pool, keys.size(), [&](std::size_t i) {
       const int key = keys[i];

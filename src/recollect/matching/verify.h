@@ -19,19 +19,21 @@ struct VerifyOptions {
   double pool_m = 6;         // key frames so near to a place's help to verify it
   int pool = 6;              // at most so many
   double refine_pool_m = 9;  // key frames so near to the pose are matched again, guided by it
-  int refine_pool = 10;      // at most so many
+  int features = 500;        // of the live image, the strongest, that places are told apart by
   MatchOptions match;
   double ransac_px = 4;
-  int ransac_iterations = 400;
+  int ransac_iterations = 150;
   int min_matches = 8;  // fewer are not tried, and fewer inliers prove nothing
   // Of places whose support is at least repeat_support, and the best one's is less than
   // repeat_ratio times that, the likeliest wins.
   int repeat_support = 25;
   double repeat_ratio = 2;
   double expected_m = 20, expected_px = 60;  // how far off an expected pose may be
-  // How far from its prediction a landmark is looked for: at first, where a narrow look would only
-  // confirm a pose that is half a metre off, and then.
+  // How far from its prediction a landmark is looked for, and in how many of these key frames at
+  // most: at first, where a narrow look would only confirm a pose that is half a metre off, and
+  // then.
   double guided_px[2] = {60, 7};
+  int guided_keys[2] = {5, 10};
   int guided_rounds = 5;          // at most
   double guided_likeness = 0.68;  // cosine between descriptors, at least
 };
