@@ -8,9 +8,11 @@
 
 namespace recollect::cnn {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CurvePoint, step, epoch, seconds, learning_rate, loss,
-                                   projection_m, correspondence, depth, train_position_m,
-                                   valid_position_m, valid_heading_deg)
+// Checkpoints of earlier versions know nothing of likelihoods.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CurvePoint, step, epoch, seconds, learning_rate,
+                                                loss, projection_m, correspondence, depth,
+                                                likelihood, train_position_m, valid_position_m,
+                                                valid_heading_deg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainingState, step, seconds_before, best_m, without_gain, curve,
                                    skipped, sums, sum_steps, options)
 
@@ -50,12 +52,12 @@ void WriteCurve(const std::filesystem::path& path, const std::vector<CurvePoint>
   if (path.empty()) return;
   std::string text =
       "step,epoch,seconds,learning_rate,loss,projection_m,correspondence,depth,"
-      "valid_position_m,valid_heading_deg,train_position_m\n";
+      "valid_position_m,valid_heading_deg,train_position_m,likelihood\n";
   for (const CurvePoint& p : curve) {
     text += fmt::format(
-        "{},{:.4f},{:.1f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", p.step,
+        "{},{:.4f},{:.1f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}\n", p.step,
         p.epoch, p.seconds, p.learning_rate, p.loss, p.projection_m, p.correspondence, p.depth,
-        p.valid_position_m, p.valid_heading_deg, p.train_position_m);
+        p.valid_position_m, p.valid_heading_deg, p.train_position_m, p.likelihood);
   }
   AtomicWrite(path, text);
 }

@@ -10,11 +10,12 @@
 namespace recollect::cnn {
 namespace {
 
-constexpr std::array<std::pair<LossKind, const char*>, 4> kLosses = {
+constexpr std::array<std::pair<LossKind, const char*>, 5> kLosses = {
     {{LossKind::kProjection, "projection"},
      {LossKind::kReprojection, "reprojection"},
      {LossKind::kL2, "l2"},
-     {LossKind::kHomoscedastic, "homoscedastic"}}};
+     {LossKind::kHomoscedastic, "homoscedastic"},
+     {LossKind::kUncertainty, "uncertainty"}}};
 
 }  // namespace
 
@@ -29,8 +30,10 @@ LossKind LossKindFromName(const std::string& name) {
   for (const auto& [kind, candidate] : kLosses) {
     if (candidate == name) return kind;
   }
-  throw Error("loss",
-              fmt::format("'{}' is not one of projection, reprojection, l2, homoscedastic", name));
+  throw Error(
+      "loss",
+      fmt::format("'{}' is not one of projection, reprojection, l2, homoscedastic, uncertainty",
+                  name));
 }
 
 TrainOptions TrainOptions::Paper(NetworkKind kind) {
@@ -93,6 +96,10 @@ void RequireSensible(const TrainOptions& o) {
   require(o.validation_share > 0 && o.validation_share < 1, "validation share", "within (0, 1)");
   require(o.loss.far_metres >= 0 && o.loss.correspondence_weight >= 0 && o.loss.depth_weight >= 0,
           "loss", "zero or more in all its parts");
+  Require(o.loss.kind != LossKind::kUncertainty || o.network == NetworkKind::kCompact, "loss",
+          fmt::format("'uncertainty' needs a covariance, and network {} predicts none",
+                      Name(o.network)),
+          "train network compact");
   require(o.loss.beta > 0, "beta", "positive");
   require(o.ranks.ranks >= 1 && o.ranks.rank >= 0 && o.ranks.rank < o.ranks.ranks, "rank",
           "within [0, ranks)");

@@ -17,9 +17,11 @@ enum class LossKind {
   kReprojection,   // distances of their projections in the key frame, pixels
   kL2,             // |t| + beta |rotation|
   kHomoscedastic,  // the same with weights that are learnt along
+  kUncertainty,    // the paper's, and the likelihood of a covariance that is predicted, too
 };
 
-// "projection", "reprojection", "l2", "homoscedastic", and back; throws Error on any other name.
+// "projection", "reprojection", "l2", "homoscedastic", "uncertainty", and back; throws Error on any
+// other name.
 std::string Name(LossKind kind);
 LossKind LossKindFromName(const std::string& name);
 

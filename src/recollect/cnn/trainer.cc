@@ -37,6 +37,7 @@ void AddLosses(const Losses& losses, TrainingState& state) {
   add(state.sums.projection_m, losses.projection);
   add(state.sums.correspondence, losses.correspondence);
   add(state.sums.depth, losses.depth);
+  add(state.sums.likelihood, losses.likelihood);
   add(state.sums.train_position_m, losses.position_m);
   ++state.sum_steps;
 }
@@ -47,7 +48,7 @@ CurvePoint TakeMeans(TrainingState& state) {
   const auto count =
       static_cast<double>(std::max<std::int64_t>(1, std::exchange(state.sum_steps, 0)));
   for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth,
-                        &mean.train_position_m}) {
+                        &mean.likelihood, &mean.train_position_m}) {
     *value /= count;
   }
   return mean;
@@ -75,7 +76,7 @@ class Trainer {
         device_(torch::cuda::is_available() ? torch::kCUDA : torch::kCPU),
         ranks_(options.ranks) {
     torch::manual_seed(SubSeed(options.seed, 0));
-    network_ = MakeNetwork(options.network, data.train.camera);
+    network_ = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
     if (!options.start.empty()) CopyWeights(options.start, options.network, *network_);
     Divisor divisor;
     if (ranks_.ranks() > 1) {
@@ -243,9 +244,11 @@ class Trainer {
     if (!First()) return;
     const Stopwatch validation;
     CurvePoint point = TakeMeans(state_);
-    const PairFigures figures =
-        EvaluatePairs(PoseNetwork(Describe({}), network_), data_.valid, data_.quick_valid)
-            .Figures();
+    PairErrors errors =
+        EvaluatePairs(PoseNetwork(Describe({}, 1), network_), data_.valid, data_.quick_valid);
+    const double scale = errors.CalibratingScale();
+    errors.ScaleCovariance(scale);
+    const PairFigures figures = errors.Figures();
     point.step = state_.step;
     point.epoch = static_cast<double>(state_.step) / static_cast<double>(per_epoch_);
     point.seconds = Seconds();
@@ -257,14 +260,16 @@ class Trainer {
     if (figures.position_mean_m < state_.best_m) {
       state_.best_m = figures.position_mean_m;
       state_.without_gain = 0;
-      PoseNetwork(Describe(figures), network_).Save(options_.out);
+      PoseNetwork(Describe(figures, scale), network_).Save(options_.out);
     }
     WriteCurve(options_.csv, state_.curve);
     Keep();
     validation_seconds_ = validation.Seconds();
   }
 
-  ModelInfo Describe(const PairFigures& figures) const {
+  bool PredictsCovariance() const { return options_.loss.kind == LossKind::kUncertainty; }
+
+  ModelInfo Describe(const PairFigures& figures, double covariance_scale) const {
     ModelInfo info;
     info.network = options_.network;
     info.crop = data_.train.crop;
@@ -277,6 +282,7 @@ class Trainer {
     for (const auto& parameter : network_->parameters()) info.parameters += parameter.numel();
     info.validated_on = data_.validated_on;
     info.validation = figures;
+    if (PredictsCovariance()) info.covariance_scale = covariance_scale;
     info.options = ToJson(options_);
     return info;
   }
