@@ -8,6 +8,12 @@
 
 namespace recollect::cnn {
 
+namespace {
+
+constexpr const char* kAverage = "average.";  // what names of averaged weights begin with
+
+}  // namespace
+
 // Checkpoints of earlier versions know nothing of likelihoods.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CurvePoint, step, epoch, seconds, learning_rate,
                                                 loss, projection_m, correspondence, depth,
@@ -17,18 +23,24 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrainingState, step, seconds_before, best_m, 
                                    skipped, sums, sum_steps, options)
 
 void WriteCheckpoint(const std::filesystem::path& path, const TrainingState& state,
-                     const torch::nn::Module& network, const Adam& adam) {
+                     const torch::nn::Module& network, const Adam& adam,
+                     const torch::nn::Module* average) {
   TensorFile file;
   file.header["checkpoint"] = state;
   for (const auto& parameter : network.named_parameters()) {
     file.tensors.emplace_back(parameter.key(), parameter.value());
   }
   for (const auto& tensor : adam.State()) file.tensors.push_back(tensor);
+  if (average != nullptr) {
+    for (const auto& parameter : average->named_parameters()) {
+      file.tensors.emplace_back(kAverage + parameter.key(), parameter.value());
+    }
+  }
   WriteTensorFile(path, file);
 }
 
 TrainingState ReadCheckpoint(const std::filesystem::path& path, const std::string& options,
-                             torch::nn::Module& network, Adam& adam) {
+                             torch::nn::Module& network, Adam& adam, torch::nn::Module* average) {
   const TensorFile file = ReadTensorFile(path);
   const std::string where = path.string();
   Require(file.header.contains("checkpoint"), where, "is not a checkpoint");
@@ -43,6 +55,11 @@ TrainingState ReadCheckpoint(const std::filesystem::path& path, const std::strin
   const torch::NoGradGuard no_gradients;
   for (auto& parameter : network.named_parameters()) {
     parameter.value().copy_(file.Find(parameter.key(), parameter.value(), where));
+  }
+  if (average != nullptr) {
+    for (auto& parameter : average->named_parameters()) {
+      parameter.value().copy_(file.Find(kAverage + parameter.key(), parameter.value(), where));
+    }
   }
   adam.Restore(file, state.step - state.skipped, where);
   return state;

@@ -51,6 +51,9 @@ struct TrainOptions {
   double weight_decay = 0;    // decoupled
   double gradient_limit = 0;  // length of the gradient beyond which it is scaled down; 0: none
   bool augment = false;       // AugmentLight
+  // In (0, 1): what is validated and kept are the weights' moving averages, of which each step
+  // leaves this share as it was (less over the first steps). 0: the weights themselves.
+  double average = 0;
   LossOptions loss;
   PairOptions pairs;
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "recollect/cnn/adam.h"
@@ -63,6 +64,37 @@ class Trained : public torch::nn::Module {
   }
 };
 
+// A copy of the network whose weights follow the network's own.
+class AveragedNetwork {
+ public:
+  AveragedNetwork(std::shared_ptr<PairNetwork> copy, const PairNetwork& of, double decay)
+      : copy_(std::move(copy)), decay_(decay) {
+    Follow(of, 0);
+  }
+
+  // After so many steps.
+  void Update(const PairNetwork& of, std::int64_t steps) {
+    const auto count = static_cast<double>(steps);
+    Follow(of, std::min(decay_, (1 + count) / (10 + count)));
+  }
+
+  const std::shared_ptr<PairNetwork>& network() const { return copy_; }
+
+ private:
+  void Follow(const PairNetwork& of, double keep) {
+    const torch::NoGradGuard no_gradients;
+    const auto from = of.parameters();
+    const auto to = copy_->parameters();
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      torch::Tensor average = to[i];
+      average.lerp_(from[i], 1 - keep);
+    }
+  }
+
+  std::shared_ptr<PairNetwork> copy_;
+  double decay_;
+};
+
 class Trainer {
  public:
   Trainer(const TrainingData& data, const TrainOptions& options, const Stopwatch& watch,
@@ -89,6 +121,11 @@ class Trainer {
     loss_ = std::make_shared<TrainingLoss>(data.train.camera, options.loss, divisor);
     trained_ = std::make_shared<Trained>(network_, loss_);
     trained_->to(device_);
+    if (options.average > 0) {
+      auto copy = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
+      copy->to(device_);
+      average_.emplace(std::move(copy), *network_, options.average);
+    }
     adam_ =
         std::make_unique<Adam>(*trained_, AdamOptions{.weight_decay = options.weight_decay,
                                                       .gradient_limit = options.gradient_limit});
@@ -144,7 +181,16 @@ class Trainer {
     return true;
   }
 
-  void Keep() const { WriteCheckpoint(CheckpointPath(options_), Saved(), *trained_, *adam_); }
+  // The network that is validated and written.
+  const std::shared_ptr<PairNetwork>& Judged() const {
+    return average_ ? average_->network() : network_;
+  }
+
+  PairNetwork* Average() const { return average_ ? average_->network().get() : nullptr; }
+
+  void Keep() const {
+    WriteCheckpoint(CheckpointPath(options_), Saved(), *trained_, *adam_, Average());
+  }
 
   double Seconds() const { return state_.seconds_before + watch_.Seconds(); }
 
@@ -196,6 +242,7 @@ class Trainer {
     ranks_.MeanGradients(*trained_);
     const bool good = adam_->Step(rate_);
     ++state_.step;
+    if (average_) average_->Update(*network_, state_.step);
     if (good) AddLosses(losses, state_);
     Guard(good);
     step_seconds_ = step.Seconds();
@@ -245,7 +292,7 @@ class Trainer {
     const Stopwatch validation;
     CurvePoint point = TakeMeans(state_);
     PairErrors errors =
-        EvaluatePairs(PoseNetwork(Describe({}, 1), network_), data_.valid, data_.quick_valid);
+        EvaluatePairs(PoseNetwork(Describe({}, 1), Judged()), data_.valid, data_.quick_valid);
     const double scale = errors.CalibratingScale();
     errors.ScaleCovariance(scale);
     const PairFigures figures = errors.Figures();
@@ -260,7 +307,7 @@ class Trainer {
     if (figures.position_mean_m < state_.best_m) {
       state_.best_m = figures.position_mean_m;
       state_.without_gain = 0;
-      PoseNetwork(Describe(figures, scale), network_).Save(options_.out);
+      PoseNetwork(Describe(figures, scale), Judged()).Save(options_.out);
     }
     WriteCurve(options_.csv, state_.curve);
     Keep();
@@ -297,7 +344,7 @@ class Trainer {
   void Resume() {
     const auto path = CheckpointPath(options_);
     if (!std::filesystem::exists(path)) return;
-    state_ = ReadCheckpoint(path, ToJson(options_), *trained_, *adam_);
+    state_ = ReadCheckpoint(path, ToJson(options_), *trained_, *adam_, Average());
   }
 
   TrainResult Finish() {
@@ -318,6 +365,7 @@ class Trainer {
   std::shared_ptr<TrainingLoss> loss_;
   std::shared_ptr<Trained> trained_;
   std::unique_ptr<Adam> adam_;
+  std::optional<AveragedNetwork> average_;
   TrainingState state_;
   double rate_ = 0, step_seconds_ = 0, validation_seconds_ = 0;
   int bad_steps_ = 0;

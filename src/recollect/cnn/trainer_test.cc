@@ -226,6 +226,28 @@ TEST_P(LossKinds, TrainAndResume) {
 INSTANTIATE_TEST_SUITE_P(All, LossKinds,
                          ::testing::Values("reprojection", "l2", "homoscedastic", "uncertainty"));
 
+TEST_F(TrainerTest, KeepsAveragedWeightsAndResumesThem) {
+  TrainOptions whole = Options("whole"), broken = Options("broken"), plain = Options("plain");
+  whole.average = broken.average = 0.5;
+  const TrainResult averaged = Run(whole), last = Run(plain);
+  // They lag behind the same training's own weights.
+  ASSERT_EQ(averaged.curve.size(), last.curve.size());
+  for (std::size_t i = 0; i < last.curve.size(); ++i) {
+    EXPECT_EQ(averaged.curve[i].loss, last.curve[i].loss) << i;
+    EXPECT_NE(averaged.curve[i].valid_position_m, last.curve[i].valid_position_m) << i;
+  }
+  RunUntilPowerCut(broken);
+  ExpectResumesAs(averaged, whole.out, broken);
+}
+
+// With averages that leave nothing as it was, the weights are kept themselves.
+TEST_F(TrainerTest, AnAverageOverNothingIsTheWeights) {
+  TrainOptions averaged = Options("averaged"), plain = Options("plain");
+  averaged.average = 1e-12;
+  const TrainResult one = Run(averaged), other = Run(plain);
+  EXPECT_NEAR(one.model.validation.position_mean_m, other.model.validation.position_mean_m, 1e-5);
+}
+
 // A covariance is put on a model that has none, and calibrated on the pairs that are validated.
 TEST_F(TrainerTest, PutsACalibratedCovarianceOnAModel) {
   const TrainResult first = Run(Options("first"));
@@ -304,6 +326,7 @@ TEST_F(TrainerTest, RefusesOptionsOutOfRange) {
     o.network = NetworkKind::kPaperB;
     o.loss.kind = LossKind::kUncertainty;
   });
+  refuses([](TrainOptions& o) { o.average = 1; });
   refuses([](TrainOptions& o) { o.learning_rate = 0; });
   refuses([](TrainOptions& o) { o.minutes = -1; });
   refuses([](TrainOptions& o) { o.validation_share = 1; });
