@@ -33,14 +33,19 @@ void RunPairs(const PairsFlags& flags) {
   const cnn::PairFigures figures = cnn::EvaluatePairs(network, data, {}, progress).Figures();
   fmt::print(
       "{} pairs up to {} m apart\n"
-      "               mean      median\n"
-      "position     {:6.3f} m   {:6.3f} m\n"
+      "               mean      median      95 %\n"
+      "position     {:6.3f} m   {:6.3f} m   {:6.3f} m\n"
       "no motion    {:6.3f} m   {:6.3f} m\n"
-      "heading      {:6.2f} deg {:6.2f} deg\n"
+      "heading      {:6.2f} deg {:6.2f} deg {:6.2f} deg\n"
       "no motion    {:6.2f} deg\n",
       figures.pairs, flags.pairs.max_distance_m, figures.position_mean_m, figures.position_median_m,
-      figures.no_motion_mean_m, figures.no_motion_median_m, figures.heading_mean_deg,
-      figures.heading_median_deg, figures.no_motion_heading_mean_deg);
+      figures.position_p95_m, figures.no_motion_mean_m, figures.no_motion_median_m,
+      figures.heading_mean_deg, figures.heading_median_deg, figures.heading_p95_deg,
+      figures.no_motion_heading_mean_deg);
+  if (figures.inside_95) {
+    fmt::print("inside the 95 % ellipsoid: {:.1f} % of poses, {:.1f} % of positions\n",
+               100 * *figures.inside_95, 100 * *figures.position_inside_95);
+  }
   WriteFigures(flags.common, nlohmann::json::parse(cnn::ToJson(figures)));
 }
 

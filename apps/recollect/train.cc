@@ -61,6 +61,7 @@ struct TrainCommand {
     take("--schedule", options.schedule,
          flags.schedule == "cosine" ? cnn::Schedule::kCosine : cnn::Schedule::kHalving);
     take("--augment", options.augment, given.augment);
+    take("--average", options.average, given.average);
     take("--loss", options.loss.kind,
          flags.loss.empty() ? cnn::LossKind::kProjection : cnn::LossKindFromName(flags.loss));
     take("--beta", options.loss.beta, given.loss.beta);
@@ -156,7 +157,10 @@ void AddTrain(CLI::App& app) {
   command.add_option("--warm-up", given.warm_up_steps, "steps over which the rate rises");
   command.add_option("--weight-decay", given.weight_decay, "decoupled weight decay");
   command.add_flag("--augment,!--no-augment", given.augment, "vary light and colours");
-  command.add_option("--loss", flags.loss, "projection, reprojection, l2 or homoscedastic");
+  command.add_option("--average", given.average,
+                     "keep averages of the weights, of which a step leaves this share; 0: off");
+  command.add_option("--loss", flags.loss,
+                     "projection, reprojection, l2, homoscedastic or uncertainty");
   command.add_option("--beta", given.loss.beta, "of --loss l2: metres that a radian counts as");
   command.add_option("--far", given.loss.far_metres, "points beyond count as being so far; 0: off");
   command.add_option("--correspondence", given.loss.correspondence_weight,

@@ -32,13 +32,16 @@ void RequireSensible(const TrainOptions& options);
 
 std::filesystem::path CheckpointPath(const TrainOptions& options);
 
-// Atomic, so that a crash leaves the old checkpoint or the new one.
+// Atomic, so that a crash leaves the old checkpoint or the new one. `average`, here and below: the
+// network of averaged weights, or null.
 void WriteCheckpoint(const std::filesystem::path& path, const TrainingState& state,
-                     const torch::nn::Module& network, const Adam& adam);
+                     const torch::nn::Module& network, const Adam& adam,
+                     const torch::nn::Module* average = nullptr);
 
 // Throws Error when the file is none of WriteCheckpoint's or was made with other options.
 TrainingState ReadCheckpoint(const std::filesystem::path& path, const std::string& options,
-                             torch::nn::Module& network, Adam& adam);
+                             torch::nn::Module& network, Adam& adam,
+                             torch::nn::Module* average = nullptr);
 
 // The curve as CSV with a line of names; nothing where `path` is empty.
 void WriteCurve(const std::filesystem::path& path, const std::vector<CurvePoint>& curve);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kFeatures = 64;
 constexpr int kContext = 16;
+constexpr int kMotionFeatures = 128;
 constexpr int kPooledRows = 3, kPooledColumns = 5;
 constexpr float kFirstDepth = 15;  // metres, what the untrained network takes all depths for
 // The head's outputs are of order one; a pair's rotation is of the order of 0.05 rad.
@@ -49,7 +50,7 @@ TORCH_MODULE(Residual);
 
 }  // namespace
 
-CompactNetwork::CompactNetwork(const PinholeCamera& camera)
+CompactNetwork::CompactNetwork(const PinholeCamera& camera, bool covariance)
     : cells_(camera.Subsampled(kCellPixels)) {
   AppendNormalised(branch_, 3, 48, 7, 4);
   AppendNormalised(branch_, 48, kFeatures, 3, 2);
@@ -73,12 +74,12 @@ CompactNetwork::CompactNetwork(const PinholeCamera& camera)
   motion_->push_back(torch::nn::PReLU());
   motion_->push_back(Convolution(64, 96, 3, 2));
   motion_->push_back(torch::nn::PReLU());
-  motion_->push_back(Convolution(96, 128, 3, 2));
+  motion_->push_back(Convolution(96, kMotionFeatures, 3, 2));
   motion_->push_back(torch::nn::PReLU());
   motion_->push_back(torch::nn::AdaptiveAvgPool2d(
       torch::nn::AdaptiveAvgPool2dOptions({kPooledRows, kPooledColumns})));
 
-  output_->push_back(torch::nn::Linear(128 * kPooledRows * kPooledColumns, 256));
+  output_->push_back(torch::nn::Linear(kMotionFeatures * kPooledRows * kPooledColumns, 256));
   output_->push_back(torch::nn::PReLU());
   torch::nn::Linear last(256, 6);
   torch::nn::init::zeros_(last->weight);
@@ -91,6 +92,11 @@ CompactNetwork::CompactNetwork(const PinholeCamera& camera)
   register_module("motion", motion_);
   register_module("output", output_);
   log_sharpness_ = register_parameter("log_sharpness", torch::full({1}, std::log(12.0)));
+  if (covariance) {
+    covariance_ = register_module(
+        "covariance",
+        std::make_shared<CovarianceHead>(kMotionFeatures * kPooledRows * kPooledColumns));
+  }
 }
 
 Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tensor& key) {
@@ -128,7 +134,8 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
       torch::cat({flow * share, share, trust, (-depth).exp() * 10.0, depth / 4.0,
                   PlaceMap(grid, batch, live.options()), context_->forward(live_features)},
                  1);
-  const torch::Tensor raw = output_->forward(motion_->forward(head_input).flatten(1));
+  const torch::Tensor pooled = motion_->forward(head_input).flatten(1);
+  const torch::Tensor raw = output_->forward(pooled);
   const torch::Tensor correction =
       torch::cat({raw.slice(1, 0, 3) * kRotationScale, raw.slice(1, 3, 6)}, 1);
   Prediction prediction;
@@ -137,6 +144,7 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
   prediction.key_features = key_unit;
   prediction.total = correlation.total;
   prediction.log_depth = log_depth.flatten(1);
+  if (covariance_) prediction.whitening = covariance_->forward(pooled, solved, sightings);
   return prediction;
 }
 

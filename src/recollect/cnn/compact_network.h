@@ -1,5 +1,6 @@
 #pragma once
 
+#include "recollect/cnn/covariance_head.h"
 #include "recollect/cnn/pair_network.h"
 
 namespace recollect::cnn {
@@ -20,16 +21,18 @@ inline constexpr int kCellPixels = 8;
 //     (SolveMotion).
 //  5. Strided convolutions over displacement, share, depth, trust and place in the image, pooled to
 //     3 x 5, and two linear layers correct it by six numbers. Their output layer starts at zero.
+//  6. Optionally a CovarianceHead tells from the same features how sure the answer is.
 // Input: images with normalised contrast (NormaliseContrast).
 class CompactNetwork : public PairNetwork {
  public:
-  explicit CompactNetwork(const PinholeCamera& camera);
+  explicit CompactNetwork(const PinholeCamera& camera, bool covariance = false);
   Prediction forward(const torch::Tensor& live, const torch::Tensor& key) override;
 
  private:
   PinholeCamera cells_;  // of the grid of cells
   torch::nn::Sequential branch_, depth_, motion_, output_;
   torch::nn::Conv2d context_{nullptr};
+  std::shared_ptr<CovarianceHead> covariance_;  // none where it is not wanted
   torch::Tensor log_sharpness_;  // of the softmax: logarithm of the inverse temperature
 };
 

@@ -48,6 +48,44 @@ torch::Tensor Transform(const torch::Tensor& motion, const torch::Tensor& points
   return torch::matmul(motion.slice(2, 0, 3), points) + motion.slice(2, 3, 4);
 }
 
+torch::Tensor Se3Log(const torch::Tensor& motion) {
+  const torch::Tensor r = motion.slice(2, 0, 3), t = motion.slice(2, 3, 4);
+  const auto skew = [&](int row, int column) {
+    return (r.select(1, row).select(1, column) - r.select(1, column).select(1, row)) / 2.0;
+  };
+  const torch::Tensor axis = torch::stack({skew(2, 1), skew(0, 2), skew(1, 0)}, 1);  // sin(angle) n
+  const torch::Tensor cosine =
+      ((r.select(1, 0).select(1, 0) + r.select(1, 1).select(1, 1) + r.select(1, 2).select(1, 2)) -
+       1.0) /
+      2.0;
+  // As in Se3Layer, series near zero, where the closed forms are given a harmless number.
+  const torch::Tensor square = axis.square().sum(1);
+  const torch::Tensor small = (square < 1e-2) & (cosine > 0);
+  const torch::Tensor sine = torch::where(small, torch::ones_like(square), square).sqrt();
+  const torch::Tensor angle = torch::atan2(sine, cosine);
+  const torch::Tensor series =
+      1.0 +
+      square / 6.0 *
+          (1.0 + square * 9.0 / 20.0 * (1.0 + square * 25.0 / 42.0 * (1.0 + square * 49.0 / 72.0)));
+  const torch::Tensor w = axis * torch::where(small, series, angle / sine).unsqueeze(1);
+
+  // J_l(w)^-1 t = t - w x t / 2 + c w x (w x t).
+  const torch::Tensor s = w.square().sum(1);
+  const torch::Tensor half = torch::where(small, torch::ones_like(s), s).sqrt() / 2.0;
+  const torch::Tensor series_c = 1.0 / 12.0 + s / 720.0 * (1.0 + s / 42.0 * (1.0 + s / 40.0));
+  const torch::Tensor closed_c = (1.0 - half / half.tan()) / (4.0 * half.square());
+  const torch::Tensor c = torch::where(small, series_c, closed_c).unsqueeze(1);
+  const torch::Tensor v = t.squeeze(2);
+  const torch::Tensor turned = torch::cross(w, v, 1);
+  return torch::cat({w, v - turned / 2.0 + c * torch::cross(w, turned, 1)}, 1);
+}
+
+torch::Tensor Se3Difference(const torch::Tensor& a, const torch::Tensor& b) {
+  const torch::Tensor back = a.slice(2, 0, 3).transpose(1, 2);
+  const torch::Tensor moved = b.slice(2, 3, 4) - a.slice(2, 3, 4);
+  return Se3Log(torch::bmm(back, torch::cat({b.slice(2, 0, 3), moved}, 2)));
+}
+
 Vector6d DeltaFromMotion(const SE3& keyframe_from_live) {
   Vector6d delta;
   delta << keyframe_from_live.RotationVector(), keyframe_from_live.translation();

@@ -22,6 +22,12 @@ torch::Tensor Grid3d(const torch::Tensor& depth, const torch::Tensor& rays);
 // motion [B, 3, 4] applied to points [B, 3, N] -> [B, 3, N].
 torch::Tensor Transform(const torch::Tensor& motion, const torch::Tensor& points);
 
+// SE3::Log of motions [B, 3, 4], rotations by less than pi: [B, 6], rotation first.
+torch::Tensor Se3Log(const torch::Tensor& motion);
+
+// x with T_a Exp(x) = T_b, of motions [B, 3, 4]: [B, 6].
+torch::Tensor Se3Difference(const torch::Tensor& a, const torch::Tensor& b);
+
 // (rotation vector, translation) of a motion, the form of the network's output.
 Vector6d DeltaFromMotion(const SE3& keyframe_from_live);
 SE3 MotionFromDelta(const Vector6d& delta);

@@ -53,6 +53,38 @@ TEST(Se3Layer, DeltaRoundTrip) {
   EXPECT_TRUE(back.Matrix().isApprox(motion.Matrix(), 1e-12));
 }
 
+torch::Tensor MotionOf(const SE3& motion) {
+  torch::Tensor out = torch::empty({1, 3, 4}, torch::kDouble);
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(out.data_ptr<double>()) =
+      motion.Matrix().topRows<3>();
+  return out;
+}
+
+TEST(Se3Log, AgreesWithSe3) {
+  for (const double angle : {0.0, 1e-8, 1e-3, 0.0999, 0.1001, 1.0, 2.0, 3.0}) {
+    Vector6d x;
+    x << angle * 2 / 3, -angle / 3, angle * 2 / 3, 1, -2, 3;
+    const torch::Tensor log = Se3Log(MotionOf(SE3::Exp(x)));
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(log[0][i].item<double>(), x[i], 1e-9) << angle;
+  }
+}
+
+TEST(Se3Log, Gradient) {
+  for (const double angle : {0.0, 0.05, 0.5, 2.0}) {
+    SCOPED_TRACE(angle);
+    const torch::Tensor delta = Doubles({angle * 2 / 3, -angle / 3, angle * 2 / 3, 1, -2, 3});
+    ExpectGradients([](const auto& in) { return Se3Log(Se3Layer(in[0])); }, {delta});
+  }
+}
+
+TEST(Se3Log, DifferenceLeadsFromOneToTheOther) {
+  Vector6d x;
+  x << 0.02, -0.01, 0.03, 0.2, 0.1, -0.3;
+  const SE3 a = SE3::FromRotationVector({0.3, -0.2, 0.1}, {1, 2, 3});
+  const torch::Tensor between = Se3Difference(MotionOf(a), MotionOf(a * SE3::Exp(x)));
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(between[0][i].item<double>(), x[i], 1e-12);
+}
+
 TEST(Grid3d, IsDepthTimesRay) {
   const PinholeCamera camera{4, 3, 200, 210, 1.5, 1.25};
   const torch::Tensor depth = torch::rand({2, 3, 4}) + 1;
@@ -177,6 +209,53 @@ TEST(PoseLosses, Gradients) {
                   {delta});
   ExpectGradients([&](const auto& in) { return HomoscedasticLoss(Se3Layer(in[0]), truth, in[1]); },
                   {delta, torch::tensor({0.3, -2.0}, torch::kDouble)});
+}
+
+class LikelihoodTest : public ::testing::Test {
+ protected:
+  torch::Tensor Whitening(std::int64_t batch) const {
+    return torch::randn({batch, 6, 6}, torch::kDouble).triu(1) +
+           torch::diag_embed(torch::rand({batch, 6}, torch::kDouble) + 0.5);
+  }
+  const torch::Tensor truth_ = Se3Layer(torch::randn({3, 6}, torch::kDouble) * 0.2);
+};
+
+TEST_F(LikelihoodTest, Gradient) {
+  ExpectGradients([&](const auto& in) { return LikelihoodLoss(Se3Layer(in[0]), truth_, in[1]); },
+                  {torch::randn({3, 6}, torch::kDouble) * 0.2, Whitening(3)});
+}
+
+// Errors drawn with a known covariance are likeliest under that one: no more, no less, not turned.
+TEST_F(LikelihoodTest, IsLeastAtTheTrueCovariance) {
+  torch::manual_seed(3);
+  constexpr std::int64_t kPairs = 20000;
+  const torch::Tensor whitening = Whitening(1);
+  // Of a t distribution as the loss has it: normal over the root of chi-square / 4.
+  const torch::Tensor z = torch::randn({kPairs, 6}, torch::kDouble);
+  const torch::Tensor chi = torch::randn({kPairs, 4}, torch::kDouble).square().sum(1, true);
+  const torch::Tensor x =
+      1e-3 * torch::matmul(z / (chi / 4).sqrt(), torch::inverse(whitening[0]).transpose(0, 1));
+  const torch::Tensor still = Se3Layer(torch::zeros({kPairs, 6}, torch::kDouble));
+  const auto loss = [&](const torch::Tensor& w) {
+    return LikelihoodLoss(still, Se3Layer(x), w.expand({kPairs, 6, 6})).item<double>();
+  };
+  const torch::Tensor right = 1e3 * whitening;
+  EXPECT_LT(loss(right), loss(1.1 * right));
+  EXPECT_LT(loss(right), loss(0.9 * right));
+  EXPECT_LT(loss(right), loss(right.diagonal(0, 1, 2).diag_embed()));
+}
+
+TEST_F(LikelihoodTest, OnePairGoneWrongIsBounded) {
+  const auto pull = [](double metres) {  // on the logarithm of the whitening
+    torch::Tensor log_whitening = torch::zeros({1}, torch::kDouble).requires_grad_(true);
+    const torch::Tensor delta = Doubles({0, 0, 0, 0, 0, metres});
+    LikelihoodLoss(Se3Layer(delta), Se3Layer(torch::zeros_like(delta)),
+                   log_whitening.exp() * torch::eye(6, torch::kDouble).unsqueeze(0))
+        .backward();
+    return log_whitening.grad().item<double>();
+  };
+  EXPECT_LT(pull(100), 10);
+  EXPECT_NEAR(pull(1000), pull(100), 0.01);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ constexpr double kSmallest = 1e-10;
 
 constexpr double kNearest = 0.5;  // metres, of points that are projected
 
+constexpr double kDegreesOfFreedom = 4;  // of the t distribution of errors
+
 torch::Tensor Norm(const torch::Tensor& x) { return (x.square().sum(1) + kSmallest).sqrt(); }
 
 }  // namespace
@@ -65,6 +67,15 @@ torch::Tensor HomoscedasticLoss(const torch::Tensor& predicted, const torch::Ten
                                 const torch::Tensor& s) {
   const MotionDistance d = DistanceBetween(predicted, truth);
   return d.translation.mean() * (-s[0]).exp() + s[0] + d.rotation.mean() * (-s[1]).exp() + s[1];
+}
+
+torch::Tensor LikelihoodLoss(const torch::Tensor& predicted, const torch::Tensor& truth,
+                             const torch::Tensor& whitening) {
+  const torch::Tensor x = Se3Difference(predicted, truth).unsqueeze(2);
+  const torch::Tensor square = torch::bmm(whitening, x).square().sum({1, 2});
+  const torch::Tensor log_volume = whitening.diagonal(0, 1, 2).log().sum(1);
+  constexpr double kExponent = (kDegreesOfFreedom + 6) / 2;
+  return (kExponent * (square / kDegreesOfFreedom).log1p() - log_volume).mean();
 }
 
 }  // namespace recollect::cnn

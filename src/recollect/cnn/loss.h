@@ -48,4 +48,11 @@ torch::Tensor WeightedPoseLoss(const torch::Tensor& predicted, const torch::Tens
 torch::Tensor HomoscedasticLoss(const torch::Tensor& predicted, const torch::Tensor& truth,
                                 const torch::Tensor& s);
 
+// Mean negative logarithm of the likelihood of x = Se3Difference(predicted, truth), but for a
+// constant, under a t distribution of 4 degrees of freedom: as z = whitening * x ~ N(0, I) near the
+// middle, but with tails that a pair gone wrong does not tear at. whitening [B, 6, 6], upper
+// triangular with a positive diagonal.
+torch::Tensor LikelihoodLoss(const torch::Tensor& predicted, const torch::Tensor& truth,
+                             const torch::Tensor& whitening);
+
 }  // namespace recollect::cnn

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <Eigen/Cholesky>
+#include <cmath>
 #include <functional>
 #include <opencv2/core.hpp>
 
+#include "recollect/cnn/pair_errors.h"
 #include "recollect/cnn/pair_network.h"
 #include "recollect/cnn/pose_network.h"
 #include "recollect/cnn/tensor_file.h"
@@ -118,6 +121,121 @@ TEST_F(ModelFile, HeadersThatLie) {
             std::string::npos);
   EXPECT_NE(error([](TensorFile& f) { f.tensors[0].second = torch::zeros(3); }).find("shape"),
             std::string::npos);
+}
+
+// A network whose head was moved off its beginning, so that it says something of each pair.
+PoseNetwork WithCovariance() {
+  torch::manual_seed(5);
+  ModelInfo info = Info();
+  info.covariance_scale = 2.5;
+  const auto network = MakeNetwork(info.network, info.camera, true);
+  const torch::NoGradGuard no_gradients;
+  for (auto& parameter : network->named_parameters()) {
+    if (parameter.key().starts_with(kCovarianceWeights)) {
+      parameter.value().add_(0.02 * torch::randn_like(parameter.value()));
+    }
+  }
+  return {info, network};
+}
+
+TEST_F(ModelFile, CovarianceSurvivesTheRoundTrip) {
+  const PoseNetwork first = WithCovariance();
+  first.Save(file_);
+  const PoseNetwork second = PoseNetwork::Load(file_, 1);
+  EXPECT_EQ(second.info().covariance_scale, 2.5);
+  cv::Mat live(192, 320, CV_8UC3), key(192, 320, CV_8UC3), other(192, 320, CV_8UC3);
+  for (cv::Mat* image : {&live, &key, &other}) cv::randu(*image, 0, 255);
+  const std::vector<CropPair> pairs{{live, key}, {live, other}};
+  const auto before = first.Estimate(pairs), after = second.Estimate(pairs);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(before[i].covariance && after[i].covariance);
+    EXPECT_EQ(*before[i].covariance, *after[i].covariance);
+    EXPECT_GT(before[i].covariance->llt().matrixL().determinant(), 0);
+    EXPECT_TRUE(before[i].keyframe_from_live.Matrix().isApprox(
+        second.KeyframeFromLive(pairs)[i].Matrix(), 1e-5));
+  }
+  EXPECT_FALSE(before[0].covariance->isApprox(*before[1].covariance, 1e-6));
+
+  // The scale is one of covariances.
+  ModelInfo twice = second.info();
+  twice.covariance_scale = 5;
+  const auto larger = PoseNetwork(twice, second.network()).Estimate(pairs);
+  EXPECT_TRUE(larger[0].covariance->isApprox(2 * *before[0].covariance, 1e-9));
+}
+
+TEST_F(ModelFile, WithoutCovarianceThereIsNone) {
+  cv::Mat image(192, 320, CV_8UC3);
+  cv::randu(image, 0, 255);
+  const CropPair pair{image, image};
+  EXPECT_FALSE(PoseNetwork::Load(file_, 1).Estimate({&pair, 1}).front().covariance);
+  EXPECT_THROW(MakeNetwork(NetworkKind::kPaperB, {}, true), Error);
+}
+
+// Training from a model without covariance begins with a fresh one, and with the model's answers.
+TEST_F(ModelFile, StartsACovarianceFromAModelWithoutOne) {
+  ModelInfo info = Info();
+  info.covariance_scale = 1;
+  torch::manual_seed(8);
+  const auto network = MakeNetwork(info.network, info.camera, true);
+  CopyWeights(file_, info.network, *network);
+  cv::Mat live(192, 320, CV_8UC3), key(192, 320, CV_8UC3);
+  cv::randu(live, 0, 255);
+  cv::randu(key, 0, 255);
+  const CropPair pair{live, key};
+  const RelativeEstimate estimate = PoseNetwork(info, network).Estimate({&pair, 1}).front();
+  EXPECT_EQ(estimate.keyframe_from_live.Matrix(),
+            PoseNetwork::Load(file_, 1).KeyframeFromLive(live, key).Matrix());
+  Vector6d variances;
+  variances << 1e-4, 1e-4, 1e-4, 0.09, 0.09, 0.09;
+  ASSERT_TRUE(estimate.covariance);
+  EXPECT_TRUE(estimate.covariance->isApprox(Matrix6d(variances.asDiagonal()), 1e-5));
+}
+
+// The model that the repository carries was written before there were covariances.
+TEST(EarlierModel, Loads) {
+  const std::filesystem::path file = "models/campus-compact.rcm";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  const PoseNetwork network = PoseNetwork::Load(file, 1);
+  EXPECT_FALSE(network.info().covariance_scale);
+  EXPECT_GT(network.info().validation.position_mean_m, 0);
+  EXPECT_FALSE(network.info().validation.inside_95);
+  const Crop& crop = network.crop();
+  const cv::Mat image(crop.height, crop.width, CV_8UC3, cv::Scalar(1, 2, 3));
+  const CropPair pair{image, image};
+  const RelativeEstimate estimate = network.Estimate({&pair, 1}).front();
+  EXPECT_FALSE(estimate.covariance);
+  EXPECT_EQ(estimate.keyframe_from_live.Matrix(), network.KeyframeFromLive(image, image).Matrix());
+}
+
+PairErrors ErrorsOf(int count) {
+  PairErrors errors;
+  for (int i = 0; i < count; ++i) {
+    errors.position_m.push_back(i + 1);
+    errors.heading_deg.push_back(count - i);
+    errors.pose_square.push_back(0.37 * ((7 * i) % count + 1));
+    errors.position_square.push_back(0.01 * (i + 1));
+  }
+  return errors;
+}
+
+TEST(PairErrorsOf, CalibrationPutsNinetyFivePercentInside) {
+  for (const int count : {1, 7, 20, 101, 600}) {
+    PairErrors errors = ErrorsOf(count);
+    errors.ScaleCovariance(errors.CalibratingScale());
+    const auto inside = static_cast<int>(std::lround(*errors.Figures().inside_95 * count));
+    EXPECT_EQ(inside, static_cast<int>(std::ceil(0.95 * count))) << count;
+    EXPECT_NEAR(errors.CalibratingScale(), 1, 1e-6) << count;
+  }
+  EXPECT_EQ(PairErrors().CalibratingScale(), 1);
+}
+
+TEST(PairErrorsOf, FiguresSayWhatMostErrorsStayBelow) {
+  const PairFigures figures = ErrorsOf(100).Figures();
+  EXPECT_EQ(figures.position_p95_m, 95);
+  EXPECT_EQ(figures.heading_p95_deg, 95);
+  EXPECT_NEAR(*figures.inside_95, 0.34, 1e-12);          // 12.592 / 0.37
+  EXPECT_NEAR(*figures.position_inside_95, 1.0, 1e-12);  // up to 1.0 of 7.815
+  EXPECT_FALSE(PairErrors().Figures().inside_95);
 }
 
 TEST(PairErrorsOf, UntrainedNetworkIsNoMotion) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,19 @@
 
 namespace recollect::cnn {
 
-// Mean and median errors over pairs, beside those of the guess "the live image was taken where the
-// key frame was". Position in metres; heading is the angle between the optical axes, degrees.
+// Errors over pairs: means, medians and what 95 % of them stay below, beside those of the guess
+// "the live image was taken where the key frame was". Position in metres; heading is the angle
+// between the optical axes, degrees.
 struct PairFigures {
   std::int64_t pairs = 0;
   double position_mean_m = 0, position_median_m = 0;
   double heading_mean_deg = 0, heading_median_deg = 0;
   double no_motion_mean_m = 0, no_motion_median_m = 0;
   double no_motion_heading_mean_deg = 0;
+  double position_p95_m = 0, heading_p95_deg = 0;
+  // Of a network that predicts its covariance: the share of errors inside its 95 % ellipsoids, of
+  // the pose (six dimensions) and of the position alone.
+  std::optional<double> inside_95, position_inside_95;
 };
 
 // What a model file says of itself.
@@ -33,6 +39,9 @@ struct ModelInfo {
   std::int64_t parameters = 0;
   std::string validated_on;  // what pairs `validation` is about, in words
   PairFigures validation;
+  // The network predicts its covariance, which is to be multiplied by this: then 95 % of the errors
+  // on the pairs of `validation` are inside their 95 % ellipsoids. None: it predicts none.
+  std::optional<double> covariance_scale;
   std::string options;  // the training's options, as JSON
 };
 

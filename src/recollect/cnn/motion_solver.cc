@@ -30,8 +30,12 @@ Residuals Evaluate(const torch::Tensor& motion, const Sightings& sightings) {
   return r;
 }
 
-torch::Tensor StepFrom(const Residuals& r, const torch::Tensor& weight,
-                       const SolverOptions& options) {
+// Least squares for a step: normal * step = right.
+struct System {
+  torch::Tensor normal, right;  // [B, 6, 6], [B, 6, 1]
+};
+
+System SystemFrom(const Residuals& r, const torch::Tensor& weight, const SolverOptions& options) {
   // q = R p + t moves by dq = dw x (R p) + dt, its projection x = X / Z by (dX - x dZ) / Z.
   const torch::Tensor a = r.turned.select(1, 0), b = r.turned.select(1, 1),
                       c = r.turned.select(1, 2);
@@ -49,8 +53,14 @@ torch::Tensor StepFrom(const Residuals& r, const torch::Tensor& weight,
   const double translation = options.sighting_sd / options.prior_translation_sd;
   const torch::Tensor sd = torch::tensor(
       {rotation, rotation, rotation, translation, translation, translation}, weight.options());
-  const torch::Tensor normal = torch::bmm(weighted, jacobian) + torch::diag(sd.square());
-  return torch::linalg_solve(normal, torch::bmm(weighted, residual)).squeeze(2);
+  return {torch::bmm(weighted, jacobian) + torch::diag(sd.square()),
+          torch::bmm(weighted, residual)};
+}
+
+torch::Tensor StepFrom(const Residuals& r, const torch::Tensor& weight,
+                       const SolverOptions& options) {
+  const System system = SystemFrom(r, weight, options);
+  return torch::linalg_solve(system.normal, system.right).squeeze(2);
 }
 
 torch::Tensor RobustWeight(const Residuals& r, const SolverOptions& options) {
@@ -91,6 +101,18 @@ torch::Tensor SolverStep(const torch::Tensor& motion, const Sightings& sightings
                          const SolverOptions& options) {
   const Residuals residuals = Evaluate(motion, sightings);
   return StepFrom(residuals, residuals.weight, options);
+}
+
+torch::Tensor MotionPrecision(const torch::Tensor& motion, const Sightings& sightings,
+                              const SolverOptions& options) {
+  const Residuals residuals = Evaluate(motion, sightings);
+  const System system = SystemFrom(residuals, RobustWeight(residuals, options), options);
+  // To the first order a step is (R, R) x.
+  const torch::Tensor turn = motion.slice(2, 0, 3), none = torch::zeros_like(turn);
+  const torch::Tensor by =
+      torch::cat({torch::cat({turn, none}, 2), torch::cat({none, turn}, 2)}, 1);
+  return torch::bmm(by.transpose(1, 2), torch::bmm(system.normal, by)) /
+         (options.sighting_sd * options.sighting_sd);
 }
 
 torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options) {

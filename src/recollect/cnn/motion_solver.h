@@ -23,6 +23,12 @@ torch::Tensor SolverStep(const torch::Tensor& motion, const Sightings& sightings
 // (Cauchy). Gradients are those of the last step, which at the minimum are the minimum's own.
 torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options = {});
 
+// What the sightings, each taken for the only witness of its place, say about how sure `motion` is:
+// the inverse covariance [B, 6, 6] of x in true motion = motion * Exp(x), rotation first, rad and
+// m.
+torch::Tensor MotionPrecision(const torch::Tensor& motion, const Sightings& sightings,
+                              const SolverOptions& options = {});
+
 // SE3 layer of delta [B, 6] applied as in SolverStep.
 torch::Tensor Moved(const torch::Tensor& motion, const torch::Tensor& delta);
 

@@ -91,5 +91,32 @@ TEST_F(MotionSolverTest, MovedGradient) {
                   {Se3Layer(delta_), torch::randn({2, 6}, torch::kDouble) * 0.1});
 }
 
+// With noise of the deviation that a sighting is said to have, the solutions scatter as said: in
+// the live camera's axes, which differ here from the key frame's.
+TEST_F(MotionSolverTest, PrecisionIsThatOfTheSolutions) {
+  constexpr std::int64_t kTrials = 400;
+  const SolverOptions options{
+      .outlier = 1e3, .prior_rotation_sd = 1e3, .prior_translation_sd = 1e3, .sighting_sd = 0.002};
+  const torch::Tensor truth =
+      Se3Layer(torch::tensor({{0.1, 0.5, -0.2, 0.5, -0.2, 1.0}}, torch::kDouble))
+          .expand({kTrials, 3, 4});
+  Sightings sightings;
+  sightings.points = sightings_.points.slice(0, 0, 1).expand({kTrials, 3, 60});
+  sightings.weight = torch::ones({kTrials, 60}, torch::kDouble);
+  sightings.seen =
+      Project(truth, sightings.points) + 0.002 * torch::randn({kTrials, 2, 60}, torch::kDouble);
+  const torch::Tensor solved = SolveMotion(sightings, options);
+  const torch::Tensor x = Se3Difference(solved, truth);
+  const torch::Tensor precision = MotionPrecision(solved, sightings, options);
+  const torch::Tensor covariance = torch::matmul(x.transpose(0, 1), x) / kTrials;
+  const torch::Tensor share = torch::matmul(precision.mean(0), covariance);  // the identity
+  EXPECT_NEAR(share.trace().item<double>() / 6, 1, 0.1);
+  const torch::Tensor factor = torch::linalg_cholesky(precision).transpose(1, 2);
+  const torch::Tensor z = torch::bmm(factor, x.unsqueeze(2)).squeeze(2);
+  EXPECT_TRUE(torch::allclose(torch::matmul(z.transpose(0, 1), z) / kTrials,
+                              torch::eye(6, torch::kDouble), 0, 0.25))
+      << torch::matmul(z.transpose(0, 1), z) / kTrials;
+}
+
 }  // namespace
 }  // namespace recollect::cnn

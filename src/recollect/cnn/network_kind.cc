@@ -35,8 +35,11 @@ Crop DefaultCrop(NetworkKind kind, int image_width, int image_height) {
                                        : Crop::Paper(image_width, image_height);
 }
 
-std::shared_ptr<PairNetwork> MakeNetwork(NetworkKind kind, const PinholeCamera& camera) {
-  if (kind == NetworkKind::kCompact) return std::make_shared<CompactNetwork>(camera);
+std::shared_ptr<PairNetwork> MakeNetwork(NetworkKind kind, const PinholeCamera& camera,
+                                         bool covariance) {
+  if (kind == NetworkKind::kCompact) return std::make_shared<CompactNetwork>(camera, covariance);
+  Require(!covariance, "network", fmt::format("{} predicts no covariance", Name(kind)),
+          "use network compact");
   return std::make_shared<PaperNetwork>(kind);
 }
 

@@ -61,10 +61,11 @@ TEST(CompactNetwork, SeesNoMotionBetweenEqualImages) {
 
 TEST(CompactNetwork, EveryParameterLearns) {
   torch::manual_seed(2);
-  const auto network = MakeNetwork(NetworkKind::kCompact, {96, 80, 80, 80, 48, 40});
+  const auto network = MakeNetwork(NetworkKind::kCompact, {96, 80, 80, 80, 48, 40}, true);
   const torch::Tensor live = torch::randn({1, 3, 80, 96}), key = torch::randn({1, 3, 80, 96});
   const Prediction prediction = network->forward(live, key);
-  (prediction.motion.square().sum() + prediction.total.mean() + prediction.log_depth.mean())
+  (prediction.motion.square().sum() + prediction.total.mean() + prediction.log_depth.mean() +
+   prediction.whitening.sum())
       .backward();
   for (const auto& parameter : network->named_parameters()) {
     ASSERT_TRUE(parameter.value().grad().defined()) << parameter.key();

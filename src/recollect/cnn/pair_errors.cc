@@ -1,5 +1,6 @@
 #include "recollect/cnn/pair_errors.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,9 @@ namespace recollect::cnn {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // pairs between two reports of progress
+constexpr double kShare = 0.95;
+// Squared radius of the ellipsoid that holds that share of a normal distribution: of chi-square.
+constexpr double kPoseBound = 12.592, kPositionBound = 7.815;  // six and three dimensions
 
 double HeadingDegrees(const SE3& a, const SE3& b) {
   const double cosine = a.rotation().col(2).dot(b.rotation().col(2));
@@ -30,17 +34,51 @@ double Median(std::vector<double> values) {
   return (*std::max_element(values.begin(), middle) + *middle) / 2;
 }
 
+// The least value that kShare of them, and no fewer, do not exceed.
+double Bound(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto count = static_cast<double>(values.size());
+  const auto at = static_cast<std::ptrdiff_t>(std::ceil(kShare * count - 1e-9)) - 1;
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::optional<double> ShareBelow(const std::vector<double>& values, double bound) {
+  if (values.empty()) return std::nullopt;
+  const auto below =
+      std::count_if(values.begin(), values.end(), [&](double value) { return value <= bound; });
+  return static_cast<double>(below) / static_cast<double>(values.size());
+}
+
 }  // namespace
 
+double PairErrors::CalibratingScale() const {
+  if (pose_square.empty()) return 1;
+  // A little more than needed: rounding is not to put the last one outside.
+  return std::max(Bound(pose_square) / kPoseBound, 1e-12) * (1 + 1e-9);
+}
+
+void PairErrors::ScaleCovariance(double by) {
+  for (std::vector<double>* squares : {&pose_square, &position_square}) {
+    for (double& square : *squares) square /= by;
+  }
+}
+
 PairFigures PairErrors::Figures() const {
-  return {static_cast<std::int64_t>(position_m.size()),
-          Mean(position_m),
-          Median(position_m),
-          Mean(heading_deg),
-          Median(heading_deg),
-          Mean(no_motion_m),
-          Median(no_motion_m),
-          Mean(no_motion_heading_deg)};
+  PairFigures figures;
+  figures.pairs = static_cast<std::int64_t>(position_m.size());
+  figures.position_mean_m = Mean(position_m);
+  figures.position_median_m = Median(position_m);
+  figures.position_p95_m = Bound(position_m);
+  figures.heading_mean_deg = Mean(heading_deg);
+  figures.heading_median_deg = Median(heading_deg);
+  figures.heading_p95_deg = Bound(heading_deg);
+  figures.no_motion_mean_m = Mean(no_motion_m);
+  figures.no_motion_median_m = Median(no_motion_m);
+  figures.no_motion_heading_mean_deg = Mean(no_motion_heading_deg);
+  figures.inside_95 = ShareBelow(pose_square, kPoseBound);
+  figures.position_inside_95 = ShareBelow(position_square, kPositionBound);
+  return figures;
 }
 
 PairErrors EvaluatePairs(const PoseNetwork& network, const PairData& data,
@@ -59,14 +97,22 @@ PairErrors EvaluatePairs(const PoseNetwork& network, const PairData& data,
       crops.push_back(
           {data.frames[data.pairs[i].live].image, data.frames[data.pairs[i].key].image});
     }
-    const std::vector<SE3> predicted = network.KeyframeFromLive(crops);
+    const std::vector<RelativeEstimate> answers = network.Estimate(crops);
     for (std::size_t i = 0; i < block.size(); ++i) {
       // The key frame's pose is common to both, so errors show in its frame as in the world.
       const SE3 truth = data.KeyframeFromLive(data.pairs[block[i]]);
-      errors.position_m.push_back((predicted[i].translation() - truth.translation()).norm());
-      errors.heading_deg.push_back(HeadingDegrees(predicted[i], truth));
+      const SE3& predicted = answers[i].keyframe_from_live;
+      errors.position_m.push_back((predicted.translation() - truth.translation()).norm());
+      errors.heading_deg.push_back(HeadingDegrees(predicted, truth));
       errors.no_motion_m.push_back(truth.translation().norm());
       errors.no_motion_heading_deg.push_back(HeadingDegrees(SE3(), truth));
+      if (!answers[i].covariance) continue;
+      const Vector6d x = (predicted.Inverse() * truth).Log();
+      const Matrix6d& covariance = *answers[i].covariance;
+      const Eigen::Vector3d shift = x.tail<3>();
+      const Eigen::Matrix3d of_shift = covariance.bottomRightCorner<3, 3>();
+      errors.pose_square.push_back(x.dot(covariance.llt().solve(x)));
+      errors.position_square.push_back(shift.dot(of_shift.llt().solve(shift)));
     }
     Report(progress, "evaluate pairs", static_cast<std::int64_t>(from + block.size()),
            static_cast<std::int64_t>(chosen.size()));

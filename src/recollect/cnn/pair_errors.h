@@ -14,6 +14,16 @@ namespace recollect::cnn {
 struct PairErrors {
   std::vector<double> position_m, heading_deg;
   std::vector<double> no_motion_m, no_motion_heading_deg;
+  // Of a network that predicts its covariance, else empty: squared lengths of the errors of pose
+  // (six dimensions) and position (three) in standard deviations.
+  std::vector<double> pose_square, position_square;
+
+  // What covariances are to be multiplied by so that 95 % of these errors of pose, and no fewer,
+  // are inside their 95 % ellipsoids; 1 where nothing is predicted.
+  double CalibratingScale() const;
+
+  // As if all covariances had been `by` times as large.
+  void ScaleCovariance(double by);
 
   PairFigures Figures() const;
 };

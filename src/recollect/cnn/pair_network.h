@@ -21,6 +21,10 @@ struct Prediction {
   // Logarithm of the depth in metres of every live cell, [B, cells]; undefined where the network
   // has no such output.
   torch::Tensor log_depth;
+  // How sure the motion is, [B, 6, 6], upper triangular with a positive diagonal: with
+  // truth = motion * Exp(x), rotation first, rad and m, whitening * x is N(0, I) but for one factor
+  // for all pairs (ModelInfo::covariance_scale). Undefined where the network has no such output.
+  torch::Tensor whitening;
 };
 
 // A siamese network. Inputs [B, 3, H, W], RGB; see NetworkTraits for their scale.
@@ -38,7 +42,12 @@ class PairNetwork : public torch::nn::Module {
 };
 
 // A network with fresh weights, drawn from torch's global generator (torch::manual_seed), for
-// crops taken by `camera`.
-std::shared_ptr<PairNetwork> MakeNetwork(NetworkKind kind, const PinholeCamera& camera);
+// crops taken by `camera`. covariance: with Prediction::whitening; its weights are drawn last, so
+// that the others are the same. Throws Error where only the compact network has it.
+std::shared_ptr<PairNetwork> MakeNetwork(NetworkKind kind, const PinholeCamera& camera,
+                                         bool covariance = false);
+
+// What the names of the covariance's weights begin with.
+inline constexpr const char* kCovarianceWeights = "covariance.";
 
 }  // namespace recollect::cnn

@@ -33,9 +33,11 @@ TensorFile ReadModel(const std::filesystem::path& path) {
   return file;
 }
 
-void CopyWeights(const TensorFile& file, const std::string& where, PairNetwork& network) {
+void CopyWeights(const TensorFile& file, const ModelInfo& info, const std::string& where,
+                 PairNetwork& network) {
   const torch::NoGradGuard no_gradients;
   for (auto& parameter : network.named_parameters()) {
+    if (!info.covariance_scale && parameter.key().starts_with(kCovarianceWeights)) continue;
     parameter.value().copy_(file.Find(parameter.key(), parameter.value(), where));
   }
 }
@@ -63,15 +65,35 @@ Prepared Prepare(const ModelInfo& info, std::span<const CropPair> pairs) {
   return prepared;
 }
 
-// [pairs, 3, 4].
-torch::Tensor Forward(PairNetwork& network, const Prepared& prepared) {
+struct Answers {
+  torch::Tensor motion, whitening;  // as in Prediction
+};
+
+Answers Forward(PairNetwork& network, const Prepared& prepared) {
   const torch::Device device = network.parameters().front().device();
   std::vector<torch::Tensor> live, key;
   for (const ImagePair& pair : prepared.pairs) {
     live.push_back(prepared.images[static_cast<std::size_t>(pair.live)]);
     key.push_back(prepared.images[static_cast<std::size_t>(pair.key)]);
   }
-  return network.forward(torch::stack(live).to(device), torch::stack(key).to(device)).motion.cpu();
+  const Prediction said =
+      network.forward(torch::stack(live).to(device), torch::stack(key).to(device));
+  return {said.motion.cpu(), said.whitening.defined() ? said.whitening.cpu() : said.whitening};
+}
+
+SE3 MotionAt(const torch::Tensor& motions, std::int64_t i) {
+  using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
+  const Eigen::Matrix<double, 3, 4> motion =
+      Eigen::Map<const Rows>(motions.data_ptr<float>() + 12 * i).cast<double>();
+  return {NearestRotation(motion.leftCols<3>()), motion.col(3)};
+}
+
+Matrix6d CovarianceAt(const torch::Tensor& whitenings, std::int64_t i) {
+  using Rows = Eigen::Matrix<float, 6, 6, Eigen::RowMajor>;
+  const Matrix6d whitening =
+      Eigen::Map<const Rows>(whitenings.data_ptr<float>() + 36 * i).cast<double>();
+  const Matrix6d root = whitening.triangularView<Eigen::Upper>().solve(Matrix6d::Identity());
+  return root * root.transpose();
 }
 
 }  // namespace
@@ -102,8 +124,8 @@ PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads, Pr
   SetThreads(threads);
   const TensorFile file = ReadModel(path);
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), path.string());
-  auto network = MakeNetwork(info.network, info.camera);
-  CopyWeights(file, path.string(), *network);
+  auto network = MakeNetwork(info.network, info.camera, info.covariance_scale.has_value());
+  CopyWeights(file, info, path.string(), *network);
   return {info, network, precision};
 }
 
@@ -112,7 +134,7 @@ void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwo
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), model.string());
   Require(info.network == kind, model.string(),
           fmt::format("is a network {} where {} is trained", Name(info.network), Name(kind)));
-  CopyWeights(file, model.string(), network);
+  CopyWeights(file, info, model.string(), network);
 }
 
 PoseNetwork PoseNetwork::Untrained(int image_width, int image_height) {
@@ -137,25 +159,44 @@ SE3 PoseNetwork::KeyframeFromLive(const cv::Mat& live_crop, const cv::Mat& key_c
 }
 
 std::vector<SE3> PoseNetwork::KeyframeFromLive(std::span<const CropPair> pairs) const {
-  const torch::InferenceMode inference;
   std::vector<SE3> motions;
   motions.reserve(pairs.size());
+  for (const RelativeEstimate& answer : Ask(pairs, false)) {
+    motions.push_back(answer.keyframe_from_live);
+  }
+  return motions;
+}
+
+std::vector<RelativeEstimate> PoseNetwork::Estimate(std::span<const CropPair> pairs) const {
+  return Ask(pairs, info_.covariance_scale.has_value());
+}
+
+// Engines know motions only: with the covariance the network itself answers.
+std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
+                                               bool covariance) const {
+  const torch::InferenceMode inference;
+  std::vector<RelativeEstimate> answers;
+  answers.reserve(pairs.size());
   for (std::size_t from = 0; from < pairs.size(); from += kBatch) {
     const Prepared prepared =
         Prepare(info_, pairs.subspan(from, std::min(kBatch, pairs.size() - from)));
-    PairEngine* engine = engine_->Get(*network_, info_.crop);
-    const torch::Tensor out =
-        (engine != nullptr ? engine->KeyframeFromLive(torch::stack(prepared.images), prepared.pairs)
-                           : Forward(*network_, prepared))
-            .contiguous();
-    for (std::int64_t i = 0; i < out.size(0); ++i) {
-      using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
-      const Eigen::Matrix<double, 3, 4> motion =
-          Eigen::Map<const Rows>(out.data_ptr<float>() + 12 * i).cast<double>();
-      motions.emplace_back(NearestRotation(motion.leftCols<3>()), motion.col(3));
+    PairEngine* engine = covariance ? nullptr : engine_->Get(*network_, info_.crop);
+    Answers out;
+    if (engine != nullptr) {
+      out.motion = engine->KeyframeFromLive(torch::stack(prepared.images), prepared.pairs);
+    } else {
+      out = Forward(*network_, prepared);
+    }
+    out.motion = out.motion.contiguous();
+    if (covariance) out.whitening = out.whitening.contiguous();
+    for (std::int64_t i = 0; i < out.motion.size(0); ++i) {
+      answers.push_back({MotionAt(out.motion, i), std::nullopt});
+      if (covariance) {
+        answers.back().covariance = *info_.covariance_scale * CovarianceAt(out.whitening, i);
+      }
     }
   }
-  return motions;
+  return answers;
 }
 
 }  // namespace recollect::cnn

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,13 @@ class PairNetwork;
 // Two crops, 8-bit B, G, R of crop().width x crop().height: PoseNetwork::crop().Apply(image).
 struct CropPair {
   cv::Mat live, key;
+};
+
+// A network's answer. truth = keyframe_from_live * Exp(x), x ~ N(0, covariance), rotation first:
+// rad and m in the live camera's axes. No covariance where the network predicts none.
+struct RelativeEstimate {
+  SE3 keyframe_from_live;
+  std::optional<Matrix6d> covariance;
 };
 
 // A trained network, ready to answer. Not for several threads at once: each takes its own copy
@@ -52,18 +60,25 @@ class PoseNetwork {
   // one live image is related to several key frames, the features are made once.
   std::vector<SE3> KeyframeFromLive(std::span<const CropPair> pairs) const;
 
+  // The same motions, up to rounding, with how sure they are: calibrated on the validation pairs of
+  // the training (ModelInfo::covariance_scale).
+  std::vector<RelativeEstimate> Estimate(std::span<const CropPair> pairs) const;
+
   const std::shared_ptr<PairNetwork>& network() const { return network_; }
 
  private:
   struct Engine;
+
+  std::vector<RelativeEstimate> Ask(std::span<const CropPair> pairs, bool covariance) const;
 
   ModelInfo info_;
   std::shared_ptr<PairNetwork> network_;
   std::shared_ptr<Engine> engine_;
 };
 
-// Copies a model file's weights into a network of the same kind, made for any camera. Throws Error
-// as PoseNetwork::Load does, and where the kinds differ.
+// Copies a model file's weights into a network of the same kind, made for any camera; where the
+// file's network predicts no covariance, the weights for that stay as they are. Throws Error as
+// PoseNetwork::Load does, and where the kinds differ.
 void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network);
 
 }  // namespace recollect::cnn

@@ -10,11 +10,12 @@
 namespace recollect::cnn {
 namespace {
 
-constexpr std::array<std::pair<LossKind, const char*>, 4> kLosses = {
+constexpr std::array<std::pair<LossKind, const char*>, 5> kLosses = {
     {{LossKind::kProjection, "projection"},
      {LossKind::kReprojection, "reprojection"},
      {LossKind::kL2, "l2"},
-     {LossKind::kHomoscedastic, "homoscedastic"}}};
+     {LossKind::kHomoscedastic, "homoscedastic"},
+     {LossKind::kUncertainty, "uncertainty"}}};
 
 }  // namespace
 
@@ -29,8 +30,10 @@ LossKind LossKindFromName(const std::string& name) {
   for (const auto& [kind, candidate] : kLosses) {
     if (candidate == name) return kind;
   }
-  throw Error("loss",
-              fmt::format("'{}' is not one of projection, reprojection, l2, homoscedastic", name));
+  throw Error(
+      "loss",
+      fmt::format("'{}' is not one of projection, reprojection, l2, homoscedastic, uncertainty",
+                  name));
 }
 
 TrainOptions TrainOptions::Paper(NetworkKind kind) {
@@ -55,30 +58,31 @@ TrainOptions TrainOptions::Compact() {
 }
 
 std::string ToJson(const TrainOptions& o) {
-  return nlohmann::json{{"network", Name(o.network)},
-                        {"epochs", o.epochs},
-                        {"batch", o.batch},
-                        {"learning_rate", o.learning_rate},
-                        {"schedule", o.schedule == Schedule::kCosine ? "cosine" : "halving"},
-                        {"warm_up_steps", o.warm_up_steps},
-                        {"weight_decay", o.weight_decay},
-                        {"gradient_limit", o.gradient_limit},
-                        {"augment", o.augment},
-                        {"far_metres", o.loss.far_metres},
-                        {"correspondence_weight", o.loss.correspondence_weight},
-                        {"depth_weight", o.loss.depth_weight},
-                        {"loss", Name(o.loss.kind)},
-                        {"beta", o.loss.beta},
-                        {"max_distance_m", o.pairs.max_distance_m},
-                        {"max_angle_rad", o.pairs.max_angle_rad},
-                        {"key_spacing_m", o.pairs.key_spacing_m},
-                        {"validate_steps", o.validate_steps},
-                        {"validation_pairs", o.validation_pairs},
-                        {"patience", o.patience},
-                        {"validation_share", o.validation_share},
-                        {"start", o.start.string()},
-                        {"seed", o.seed}}
-      .dump();
+  nlohmann::json json{{"network", Name(o.network)},
+                      {"epochs", o.epochs},
+                      {"batch", o.batch},
+                      {"learning_rate", o.learning_rate},
+                      {"schedule", o.schedule == Schedule::kCosine ? "cosine" : "halving"},
+                      {"warm_up_steps", o.warm_up_steps},
+                      {"weight_decay", o.weight_decay},
+                      {"gradient_limit", o.gradient_limit},
+                      {"augment", o.augment},
+                      {"far_metres", o.loss.far_metres},
+                      {"correspondence_weight", o.loss.correspondence_weight},
+                      {"depth_weight", o.loss.depth_weight},
+                      {"loss", Name(o.loss.kind)},
+                      {"beta", o.loss.beta},
+                      {"max_distance_m", o.pairs.max_distance_m},
+                      {"max_angle_rad", o.pairs.max_angle_rad},
+                      {"key_spacing_m", o.pairs.key_spacing_m},
+                      {"validate_steps", o.validate_steps},
+                      {"validation_pairs", o.validation_pairs},
+                      {"patience", o.patience},
+                      {"validation_share", o.validation_share},
+                      {"start", o.start.string()},
+                      {"seed", o.seed}};
+  if (o.average > 0) json["average"] = o.average;  // so that earlier checkpoints go on
+  return json.dump();
 }
 
 void RequireSensible(const TrainOptions& o) {
@@ -89,10 +93,15 @@ void RequireSensible(const TrainOptions& o) {
   require(o.batch > 0, "batch", "positive");
   require(o.minutes >= 0, "minutes", "zero or more");
   require(o.learning_rate > 0, "learning rate", "positive");
+  require(o.average >= 0 && o.average < 1, "average", "within [0, 1)");
   require(o.validation_pairs > 0, "validation pairs", "positive");
   require(o.validation_share > 0 && o.validation_share < 1, "validation share", "within (0, 1)");
   require(o.loss.far_metres >= 0 && o.loss.correspondence_weight >= 0 && o.loss.depth_weight >= 0,
           "loss", "zero or more in all its parts");
+  Require(o.loss.kind != LossKind::kUncertainty || o.network == NetworkKind::kCompact, "loss",
+          fmt::format("'uncertainty' needs a covariance, and network {} predicts none",
+                      Name(o.network)),
+          "train network compact");
   require(o.loss.beta > 0, "beta", "positive");
   require(o.ranks.ranks >= 1 && o.ranks.rank >= 0 && o.ranks.rank < o.ranks.ranks, "rank",
           "within [0, ranks)");

@@ -17,9 +17,11 @@ enum class LossKind {
   kReprojection,   // distances of their projections in the key frame, pixels
   kL2,             // |t| + beta |rotation|
   kHomoscedastic,  // the same with weights that are learnt along
+  kUncertainty,    // the paper's, and the likelihood of a covariance that is predicted, too
 };
 
-// "projection", "reprojection", "l2", "homoscedastic", and back; throws Error on any other name.
+// "projection", "reprojection", "l2", "homoscedastic", "uncertainty", and back; throws Error on any
+// other name.
 std::string Name(LossKind kind);
 LossKind LossKindFromName(const std::string& name);
 
@@ -49,6 +51,9 @@ struct TrainOptions {
   double weight_decay = 0;    // decoupled
   double gradient_limit = 0;  // length of the gradient beyond which it is scaled down; 0: none
   bool augment = false;       // AugmentLight
+  // In (0, 1): what is validated and kept are the weights' moving averages, of which each step
+  // leaves this share as it was (less over the first steps). 0: the weights themselves.
+  double average = 0;
   LossOptions loss;
   PairOptions pairs;
 

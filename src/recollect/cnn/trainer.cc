@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "recollect/cnn/adam.h"
@@ -37,6 +38,7 @@ void AddLosses(const Losses& losses, TrainingState& state) {
   add(state.sums.projection_m, losses.projection);
   add(state.sums.correspondence, losses.correspondence);
   add(state.sums.depth, losses.depth);
+  add(state.sums.likelihood, losses.likelihood);
   add(state.sums.train_position_m, losses.position_m);
   ++state.sum_steps;
 }
@@ -47,7 +49,7 @@ CurvePoint TakeMeans(TrainingState& state) {
   const auto count =
       static_cast<double>(std::max<std::int64_t>(1, std::exchange(state.sum_steps, 0)));
   for (double* value : {&mean.loss, &mean.projection_m, &mean.correspondence, &mean.depth,
-                        &mean.train_position_m}) {
+                        &mean.likelihood, &mean.train_position_m}) {
     *value /= count;
   }
   return mean;
@@ -60,6 +62,37 @@ class Trained : public torch::nn::Module {
     register_module("network", std::move(network));
     register_module("loss", std::move(loss));
   }
+};
+
+// A copy of the network whose weights follow the network's own.
+class AveragedNetwork {
+ public:
+  AveragedNetwork(std::shared_ptr<PairNetwork> copy, const PairNetwork& of, double decay)
+      : copy_(std::move(copy)), decay_(decay) {
+    Follow(of, 0);
+  }
+
+  // After so many steps.
+  void Update(const PairNetwork& of, std::int64_t steps) {
+    const auto count = static_cast<double>(steps);
+    Follow(of, std::min(decay_, (1 + count) / (10 + count)));
+  }
+
+  const std::shared_ptr<PairNetwork>& network() const { return copy_; }
+
+ private:
+  void Follow(const PairNetwork& of, double keep) {
+    const torch::NoGradGuard no_gradients;
+    const auto from = of.parameters();
+    const auto to = copy_->parameters();
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      torch::Tensor average = to[i];
+      average.lerp_(from[i], 1 - keep);
+    }
+  }
+
+  std::shared_ptr<PairNetwork> copy_;
+  double decay_;
 };
 
 class Trainer {
@@ -75,7 +108,7 @@ class Trainer {
         device_(torch::cuda::is_available() ? torch::kCUDA : torch::kCPU),
         ranks_(options.ranks) {
     torch::manual_seed(SubSeed(options.seed, 0));
-    network_ = MakeNetwork(options.network, data.train.camera);
+    network_ = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
     if (!options.start.empty()) CopyWeights(options.start, options.network, *network_);
     Divisor divisor;
     if (ranks_.ranks() > 1) {
@@ -88,6 +121,11 @@ class Trainer {
     loss_ = std::make_shared<TrainingLoss>(data.train.camera, options.loss, divisor);
     trained_ = std::make_shared<Trained>(network_, loss_);
     trained_->to(device_);
+    if (options.average > 0) {
+      auto copy = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
+      copy->to(device_);
+      average_.emplace(std::move(copy), *network_, options.average);
+    }
     adam_ =
         std::make_unique<Adam>(*trained_, AdamOptions{.weight_decay = options.weight_decay,
                                                       .gradient_limit = options.gradient_limit});
@@ -143,7 +181,16 @@ class Trainer {
     return true;
   }
 
-  void Keep() const { WriteCheckpoint(CheckpointPath(options_), Saved(), *trained_, *adam_); }
+  // The network that is validated and written.
+  const std::shared_ptr<PairNetwork>& Judged() const {
+    return average_ ? average_->network() : network_;
+  }
+
+  PairNetwork* Average() const { return average_ ? average_->network().get() : nullptr; }
+
+  void Keep() const {
+    WriteCheckpoint(CheckpointPath(options_), Saved(), *trained_, *adam_, Average());
+  }
 
   double Seconds() const { return state_.seconds_before + watch_.Seconds(); }
 
@@ -195,6 +242,7 @@ class Trainer {
     ranks_.MeanGradients(*trained_);
     const bool good = adam_->Step(rate_);
     ++state_.step;
+    if (average_) average_->Update(*network_, state_.step);
     if (good) AddLosses(losses, state_);
     Guard(good);
     step_seconds_ = step.Seconds();
@@ -243,9 +291,11 @@ class Trainer {
     if (!First()) return;
     const Stopwatch validation;
     CurvePoint point = TakeMeans(state_);
-    const PairFigures figures =
-        EvaluatePairs(PoseNetwork(Describe({}), network_), data_.valid, data_.quick_valid)
-            .Figures();
+    PairErrors errors =
+        EvaluatePairs(PoseNetwork(Describe({}, 1), Judged()), data_.valid, data_.quick_valid);
+    const double scale = errors.CalibratingScale();
+    errors.ScaleCovariance(scale);
+    const PairFigures figures = errors.Figures();
     point.step = state_.step;
     point.epoch = static_cast<double>(state_.step) / static_cast<double>(per_epoch_);
     point.seconds = Seconds();
@@ -257,14 +307,16 @@ class Trainer {
     if (figures.position_mean_m < state_.best_m) {
       state_.best_m = figures.position_mean_m;
       state_.without_gain = 0;
-      PoseNetwork(Describe(figures), network_).Save(options_.out);
+      PoseNetwork(Describe(figures, scale), Judged()).Save(options_.out);
     }
     WriteCurve(options_.csv, state_.curve);
     Keep();
     validation_seconds_ = validation.Seconds();
   }
 
-  ModelInfo Describe(const PairFigures& figures) const {
+  bool PredictsCovariance() const { return options_.loss.kind == LossKind::kUncertainty; }
+
+  ModelInfo Describe(const PairFigures& figures, double covariance_scale) const {
     ModelInfo info;
     info.network = options_.network;
     info.crop = data_.train.crop;
@@ -277,6 +329,7 @@ class Trainer {
     for (const auto& parameter : network_->parameters()) info.parameters += parameter.numel();
     info.validated_on = data_.validated_on;
     info.validation = figures;
+    if (PredictsCovariance()) info.covariance_scale = covariance_scale;
     info.options = ToJson(options_);
     return info;
   }
@@ -291,7 +344,7 @@ class Trainer {
   void Resume() {
     const auto path = CheckpointPath(options_);
     if (!std::filesystem::exists(path)) return;
-    state_ = ReadCheckpoint(path, ToJson(options_), *trained_, *adam_);
+    state_ = ReadCheckpoint(path, ToJson(options_), *trained_, *adam_, Average());
   }
 
   TrainResult Finish() {
@@ -312,6 +365,7 @@ class Trainer {
   std::shared_ptr<TrainingLoss> loss_;
   std::shared_ptr<Trained> trained_;
   std::unique_ptr<Adam> adam_;
+  std::optional<AveragedNetwork> average_;
   TrainingState state_;
   double rate_ = 0, step_seconds_ = 0, validation_seconds_ = 0;
   int bad_steps_ = 0;

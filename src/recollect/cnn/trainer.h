@@ -16,7 +16,7 @@ namespace recollect::cnn {
 struct CurvePoint {
   std::int64_t step = 0;
   double epoch = 0, seconds = 0, learning_rate = 0;
-  double loss = 0, projection_m = 0, correspondence = 0, depth = 0;
+  double loss = 0, projection_m = 0, correspondence = 0, depth = 0, likelihood = 0;
   double train_position_m = 0;  // over the pairs trained on, as they were seen
   double valid_position_m = 0, valid_heading_deg = 0;
 };

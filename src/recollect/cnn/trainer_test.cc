@@ -223,7 +223,69 @@ TEST_P(LossKinds, TrainAndResume) {
   ExpectResumesAs(expected, whole.out, broken);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LossKinds, ::testing::Values("reprojection", "l2", "homoscedastic"));
+INSTANTIATE_TEST_SUITE_P(All, LossKinds,
+                         ::testing::Values("reprojection", "l2", "homoscedastic", "uncertainty"));
+
+TEST_F(TrainerTest, KeepsAveragedWeightsAndResumesThem) {
+  TrainOptions whole = Options("whole"), broken = Options("broken"), plain = Options("plain");
+  whole.average = broken.average = 0.5;
+  const TrainResult averaged = Run(whole), last = Run(plain);
+  // They lag behind the same training's own weights.
+  ASSERT_EQ(averaged.curve.size(), last.curve.size());
+  for (std::size_t i = 0; i < last.curve.size(); ++i) {
+    EXPECT_EQ(averaged.curve[i].loss, last.curve[i].loss) << i;
+    EXPECT_NE(averaged.curve[i].valid_position_m, last.curve[i].valid_position_m) << i;
+  }
+  RunUntilPowerCut(broken);
+  ExpectResumesAs(averaged, whole.out, broken);
+}
+
+// With averages that leave nothing as it was, the weights are kept themselves.
+TEST_F(TrainerTest, AnAverageOverNothingIsTheWeights) {
+  TrainOptions averaged = Options("averaged"), plain = Options("plain");
+  averaged.average = 1e-12;
+  const TrainResult one = Run(averaged), other = Run(plain);
+  EXPECT_NEAR(one.model.validation.position_mean_m, other.model.validation.position_mean_m, 1e-5);
+}
+
+// A covariance is put on a model that has none, and calibrated on the pairs that are validated.
+TEST_F(TrainerTest, PutsACalibratedCovarianceOnAModel) {
+  const TrainResult first = Run(Options("first"));
+  EXPECT_FALSE(first.model.covariance_scale);
+  TrainOptions options = Options("second");
+  options.start = Options("first").out;
+  options.loss.kind = LossKind::kUncertainty;
+  options.validation_pairs = 40;
+  const TrainResult second = Run(options);
+  const PoseNetwork network = PoseNetwork::Load(options.out, 1);
+  ASSERT_TRUE(network.info().covariance_scale);
+  ThreadPool pool(1);
+  const PairData data =
+      LoadPairs(std::span(street_.laps()).last(1), std::span(street_.laps()).first(1),
+                network.crop(), options.pairs, pool);
+  std::vector<std::size_t> validated;  // as the training chose them
+  const std::size_t count = std::min<std::size_t>(40, data.pairs.size());
+  for (std::size_t i = 0; i < count; ++i) validated.push_back(i * data.pairs.size() / count);
+  const PairFigures figures = EvaluatePairs(network, data, validated).Figures();
+  ASSERT_TRUE(figures.inside_95);
+  EXPECT_NEAR(*figures.inside_95, 0.95, 1.01 / static_cast<double>(count));
+  EXPECT_NEAR(*figures.inside_95, *network.info().validation.inside_95, 1e-12);
+  EXPECT_NE(second.curve.back().likelihood, 0);
+  EXPECT_NE(ReadFile(options.csv).find(",likelihood"), std::string::npos);
+}
+
+// With its covariance a network learns the same motions: nothing flows back from there. (The bound
+// on the gradient's length knows both, so it is lifted here.)
+TEST_F(TrainerTest, TheCovarianceLeavesTheMotionAlone) {
+  TrainOptions without = Options("without"), with = Options("with");
+  without.gradient_limit = with.gradient_limit = 0;
+  with.loss.kind = LossKind::kUncertainty;
+  const TrainResult one = Run(without), other = Run(with);
+  ASSERT_EQ(one.curve.size(), other.curve.size());
+  for (std::size_t i = 0; i < one.curve.size(); ++i) {
+    EXPECT_EQ(one.curve[i].valid_position_m, other.curve[i].valid_position_m) << i;
+  }
+}
 
 TEST_F(TrainerTest, BeginsWithTheWeightsOfAModel) {
   const TrainResult first = Run(Options("first"));
@@ -260,6 +322,11 @@ TEST_F(TrainerTest, RefusesOptionsOutOfRange) {
   refuses([](TrainOptions& o) { o.batch = -1; });
   refuses([](TrainOptions& o) { o.ranks.ranks = 3; });  // do not share out a batch of four
   refuses([](TrainOptions& o) { o.loss.beta = 0; });
+  refuses([](TrainOptions& o) {
+    o.network = NetworkKind::kPaperB;
+    o.loss.kind = LossKind::kUncertainty;
+  });
+  refuses([](TrainOptions& o) { o.average = 1; });
   refuses([](TrainOptions& o) { o.learning_rate = 0; });
   refuses([](TrainOptions& o) { o.minutes = -1; });
   refuses([](TrainOptions& o) { o.validation_share = 1; });

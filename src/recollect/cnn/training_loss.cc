@@ -14,6 +14,10 @@ namespace {
 const std::vector<float> kFirstLogWeights = {0, -3};
 constexpr int kStride = kCellPixels / kDepthStep;  // from the depth grid to the cell grid
 
+// The covariance shares no weights with anything else, so this only says how much its gradient
+// counts where the length of all gradients is bounded.
+constexpr double kLikelihoodWeight = 0.1;
+
 torch::Tensor EveryCell(const torch::Tensor& depth) {
   return depth.slice(1, 0, torch::nullopt, kStride).slice(2, 0, torch::nullopt, kStride);
 }
@@ -49,6 +53,7 @@ torch::Tensor TrainingLoss::PoseLoss(const torch::Tensor& motion, const Batch& b
     case LossKind::kHomoscedastic:
       return HomoscedasticLoss(motion, batch.motion, log_weights_);
     case LossKind::kProjection:
+    case LossKind::kUncertainty:
       break;
   }
   return ProjectionLoss(motion, batch.motion, points, valid, options_.far_metres, divisor_);
@@ -59,11 +64,17 @@ Losses TrainingLoss::operator()(const Prediction& prediction, const Batch& batch
   const torch::Tensor points = Grid3d(batch.depth, rays_);
   losses.total = PoseLoss(prediction.motion, batch, points);
   losses.projection = losses.total;
-  if (options_.kind != LossKind::kProjection) {  // for the curve
+  if (options_.kind != LossKind::kProjection && options_.kind != LossKind::kUncertainty) {
+    // For the curve.
     losses.projection = ProjectionLoss(prediction.motion.detach(), batch.motion, points,
                                        batch.depth.flatten(1) > 0, options_.far_metres, divisor_);
   }
   losses.position_m = (prediction.motion - batch.motion).detach().select(2, 3).norm(2, 1).mean();
+  if (options_.kind == LossKind::kUncertainty) {
+    losses.likelihood =
+        LikelihoodLoss(prediction.motion.detach(), batch.motion, prediction.whitening);
+    losses.total = losses.total + kLikelihoodWeight * losses.likelihood;
+  }
   if (!prediction.total.defined()) return losses;
 
   const torch::Tensor cell_depth = EveryCell(batch.depth).flatten(1);

@@ -16,6 +16,7 @@ struct Losses {
   torch::Tensor projection;      // the paper's, metres; in the total where it is the chosen one
   torch::Tensor correspondence;  // cross-entropy, nats
   torch::Tensor depth;           // mean |log predicted / true|
+  torch::Tensor likelihood;      // LikelihoodLoss of the predicted covariance
   torch::Tensor position_m;      // mean distance of predicted from true position; not in the total
 };
 

@@ -127,8 +127,9 @@ void Localizer::RelateByNetwork(const cv::Mat& image, Localization& answer) {
   const cv::Mat key_image = map_.Image(answer.key_frame);
   answer.ms.key_frame = step.Milliseconds();
   step.Restart();
-  answer.world_from_camera = key_frame.world_from_camera * Relate(image, key_image);
-  answer.covariance = NetworkPrior(answer.world_from_camera).covariance;
+  const cnn::RelativeEstimate estimate = Estimate(image, key_image);
+  answer.world_from_camera = key_frame.world_from_camera * estimate.keyframe_from_live;
+  answer.covariance = NetworkCovariance(estimate);
   answer.carried_by = Relative::kCnn;
   answer.state = State::kUncertain;
   answer.ms.relate = step.Milliseconds();
@@ -222,9 +223,9 @@ void Localizer::RelateTogether(const cv::Mat& image, const matching::Features& l
   answer.place = answer.key_frame;
   answer.key_frame = recollected;
   const Stopwatch step;
-  const auto together =
-      matching::RefineFrom(frames_, live, answer.world_from_camera, options_.verify,
-                           NetworkPrior(answer.world_from_camera), &pool_);
+  const auto together = matching::RefineFrom(
+      frames_, live, answer.world_from_camera, options_.verify,
+      matching::PosePrior{answer.world_from_camera, answer.covariance}, &pool_);
   answer.ms.verify += step.Milliseconds();
   if (together && (!verified || together->support > verified->support)) {
     Take(*together, Relative::kFused, answer);
@@ -247,16 +248,17 @@ void Localizer::Take(const matching::Verified& verified, Relative carried_by,
   answer.state = matching::IsSure(verified, options_.sure) ? State::kLocalised : State::kUncertain;
 }
 
-matching::PosePrior Localizer::NetworkPrior(const SE3& world_from_camera) const {
+Matrix6d Localizer::NetworkCovariance(const cnn::RelativeEstimate& estimate) const {
+  if (estimate.covariance) return *estimate.covariance;
   const cnn::PairFigures& figures = network_->info().validation;
   // Without validation: as bad as a key frame's own pose, 2 m and 3 degrees.
   const double position = figures.pairs > 0 ? figures.position_mean_m : 2;
   const double heading =
       (figures.pairs > 0 ? figures.heading_mean_deg : 3) * std::numbers::pi / 180;
-  matching::PosePrior prior{world_from_camera, Matrix6d::Zero()};
-  prior.covariance.diagonal().head<3>().setConstant(heading * heading);
-  prior.covariance.diagonal().tail<3>().setConstant(position * position);
-  return prior;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().head<3>().setConstant(heading * heading);
+  covariance.diagonal().tail<3>().setConstant(position * position);
+  return covariance;
 }
 
 std::optional<matching::Verified> Localizer::Verify(const cv::Mat& image,
@@ -276,10 +278,14 @@ wnn::Recollection Localizer::Recollect(const cv::Mat& image, const std::string& 
 }
 
 SE3 Localizer::Relate(const cv::Mat& live, const cv::Mat& key_frame) {
+  return Estimate(live, key_frame).keyframe_from_live;
+}
+
+cnn::RelativeEstimate Localizer::Estimate(const cv::Mat& live, const cv::Mat& key_frame) {
   Require(network_.has_value(), "localizer", "has no network", "give --model");
   const cnn::Crop& crop = network_->crop();
-  return network_->KeyframeFromLive(crop.Apply(live, "live image"),
-                                    crop.Apply(key_frame, "key frame"));
+  const cnn::CropPair pair{crop.Apply(live, "live image"), crop.Apply(key_frame, "key frame")};
+  return network_->Estimate(std::span(&pair, 1)).front();
 }
 
 }  // namespace recollect

@@ -57,7 +57,8 @@ struct Localization {
   bool recognised = true;
   std::optional<wnn::Explanation> explanation;  // where that was asked for
   // Of world_from_camera: the truth is world_from_camera * Exp(xi), xi ~ N(0, covariance), rotation
-  // first: rad and m in the camera's axes. Of the network: its errors on its validation pairs.
+  // first: rad and m in the camera's axes. Of the network: what it predicts,
+  // or where it predicts none its errors on its validation pairs.
   Matrix6d covariance = Matrix6d::Zero();
   State state = State::kUncertain;
   Relative carried_by = Relative::kCnn;           // which part the pose comes from
@@ -123,7 +124,9 @@ class Localizer {
   void RelateTogether(const cv::Mat& image, const matching::Features& live, int likeliest,
                       Localization& answer);
   void Take(const matching::Verified& verified, Relative carried_by, Localization& answer) const;
-  matching::PosePrior NetworkPrior(const SE3& world_from_camera) const;
+  cnn::RelativeEstimate Estimate(const cv::Mat& live, const cv::Mat& key_frame);
+  // Of a network's answer: what it says itself, else its errors on its validation pairs.
+  Matrix6d NetworkCovariance(const cnn::RelativeEstimate& estimate) const;
 
   const Map& map_;
   std::optional<cnn::PoseNetwork> network_;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 
+#include "recollect/cnn/pair_network.h"
 #include "recollect/core/parallel.h"
 #include "recollect/matching/mapped.h"
 #include "recollect/testing/street.h"
@@ -60,6 +62,34 @@ TEST_F(LocalizerTest, AnAnswerAgainstTheDriveIsUncertain) {
   EXPECT_EQ(localizer.Localize(map_.Image(9)).state, State::kLocalised);
   localizer.Reset();
   EXPECT_EQ(localizer.Localize(map_.Image(34)).state, State::kLocalised);
+}
+
+// Before any training: "no motion" or nearly, with errors of 0.01 rad and 0.3 m.
+cnn::PoseNetwork Network(const Map& map, std::optional<double> covariance_scale) {
+  const PinholeCamera& camera = map.description().camera.left;
+  cnn::ModelInfo info;
+  info.crop = cnn::DefaultCrop(info.network, camera.width, camera.height);
+  info.camera = info.crop.Apply(camera);
+  info.validation.pairs = 10;
+  info.validation.position_mean_m = 0.5;
+  info.validation.heading_mean_deg = 1;
+  info.covariance_scale = covariance_scale;
+  return {info, cnn::MakeNetwork(info.network, info.camera, covariance_scale.has_value())};
+}
+
+TEST_F(LocalizerTest, TheNetworksAnswerIsAsSureAsItSays) {
+  LocalizerOptions options;
+  options.relative = Relative::kCnn;
+  const Localization said =
+      Localizer(map_, Network(map_, 4.0), pool_, options).Localize(map_.Image(20));
+  Vector6d variances;
+  variances << 4e-4, 4e-4, 4e-4, 0.36, 0.36, 0.36;
+  EXPECT_TRUE(said.covariance.isApprox(Matrix6d(variances.asDiagonal()), 1e-5)) << said.covariance;
+  // A network that says nothing is as sure as it was right on its validation pairs.
+  const Localization silent =
+      Localizer(map_, Network(map_, std::nullopt), pool_, options).Localize(map_.Image(20));
+  EXPECT_NEAR(silent.covariance(5, 5), 0.25, 1e-9);
+  EXPECT_NEAR(std::sqrt(silent.covariance(0, 0)), 0.0175, 1e-4);
 }
 
 TEST_F(LocalizerTest, ACameraThatHangsIsUncertain) {
