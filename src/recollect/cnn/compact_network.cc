@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "recollect/cnn/compact_engine.h"
 #include "recollect/cnn/correspondence.h"
 #include "recollect/cnn/layers.h"
 #include "recollect/cnn/motion_solver.h"
@@ -14,9 +15,6 @@ constexpr int kFeatures = 64;
 constexpr int kContext = 16;
 constexpr int kMotionFeatures = 128;
 constexpr int kPooledRows = 3, kPooledColumns = 5;
-constexpr float kFirstDepth = 15;  // metres, what the untrained network takes all depths for
-// The head's outputs are of order one; a pair's rotation is of the order of 0.05 rad.
-constexpr double kRotationScale = 0.05;
 
 torch::nn::Conv2d Convolution(int in, int out, int kernel, int stride) {
   torch::nn::Conv2d layer(
@@ -114,10 +112,10 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
   const Correlation correlation = Correlate(live_unit, key_unit, grid);
   const PeakFlow peak = ReadPeaks(correlation, grid);
   const torch::Tensor looks = depth_->forward(live_features);
-  const torch::Tensor log_depth = looks.narrow(1, 0, 1) + std::log(kFirstDepth);
+  const torch::Tensor log_depth = looks.narrow(1, 0, 1) + kLogFirstDepth;
   const torch::Tensor trust = looks.narrow(1, 1, 1).sigmoid();
   const torch::Tensor share = peak.share.view({batch, 1, grid.rows, grid.columns});
-  const torch::Tensor known_depth = log_depth.clamp(0, 6);  // 1 to 400 m
+  const torch::Tensor known_depth = log_depth.clamp(0, kMostLogDepth);
 
   Sightings sightings;
   const torch::Tensor rays = RayGrid(cells_).to(live.device());
@@ -136,16 +134,28 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
                  1);
   const torch::Tensor pooled = motion_->forward(head_input).flatten(1);
   const torch::Tensor raw = output_->forward(pooled);
-  const torch::Tensor correction =
-      torch::cat({raw.slice(1, 0, 3) * kRotationScale, raw.slice(1, 3, 6)}, 1);
   Prediction prediction;
-  prediction.motion = Moved(solved, correction);
+  prediction.motion = Corrected(solved, raw);
   prediction.live_features = live_unit;
   prediction.key_features = key_unit;
   prediction.total = correlation.total;
   prediction.log_depth = log_depth.flatten(1);
   if (covariance_) prediction.whitening = covariance_->forward(pooled, solved, sightings);
   return prediction;
+}
+
+torch::Tensor Corrected(const torch::Tensor& solved, const torch::Tensor& raw) {
+  // The head's outputs are of order one; a pair's rotation is of the order of 0.05 rad.
+  constexpr double kRotationScale = 0.05;
+  return Moved(solved, torch::cat({raw.slice(1, 0, 3) * kRotationScale, raw.slice(1, 3, 6)}, 1));
+}
+
+std::unique_ptr<PairEngine> CompactNetwork::MakeEngine(std::int64_t rows, std::int64_t columns,
+                                                       Precision precision) {
+  return std::make_unique<CompactEngine>(
+      CompactParts{cells_, branch_, depth_, motion_, output_, context_, covariance_,
+                   log_sharpness_.exp().item<float>()},
+      Grid{rows / kCellPixels, columns / kCellPixels}, precision);
 }
 
 }  // namespace recollect::cnn

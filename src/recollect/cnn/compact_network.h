@@ -27,6 +27,8 @@ class CompactNetwork : public PairNetwork {
  public:
   explicit CompactNetwork(const PinholeCamera& camera, bool covariance = false);
   Prediction forward(const torch::Tensor& live, const torch::Tensor& key) override;
+  std::unique_ptr<PairEngine> MakeEngine(std::int64_t rows, std::int64_t columns,
+                                         Precision precision) override;
 
  private:
   PinholeCamera cells_;  // of the grid of cells

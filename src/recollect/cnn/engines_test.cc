@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "recollect/cnn/compact_network.h"
 #include "recollect/cnn/convolution_taps.h"
 #include "recollect/cnn/pair_network.h"
 #include "recollect/cnn/paper_network.h"
@@ -42,16 +43,65 @@ TEST_P(PaperEngineTest, AnswersAsLibtorchDoes) {
   ASSERT_GT((expected - torch::eye(3, 4)).abs().max().item<double>(), 0.03);
 
   const auto engine = network->MakeEngine(240, 320, Precision::kFloat32);
-  EXPECT_LT((engine->KeyframeFromLive(images, pairs) - expected).abs().max().item<double>(), 1e-4);
-  const torch::Tensor one = engine->KeyframeFromLive(images, std::span(pairs).last(1));
+  EXPECT_LT((engine->Answer(images, pairs).motion - expected).abs().max().item<double>(), 1e-4);
+  const torch::Tensor one = engine->Answer(images, std::span(pairs).last(1)).motion;
   EXPECT_LT((one[0] - expected[4]).abs().max().item<double>(), 1e-4);
 
   const auto half = network->MakeEngine(240, 320, Precision::kBfloat16);
-  EXPECT_LT((half->KeyframeFromLive(images, pairs) - expected).abs().max().item<double>(), 0.03);
+  EXPECT_LT((half->Answer(images, pairs).motion - expected).abs().max().item<double>(), 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, PaperEngineTest,
                          ::testing::Values(NetworkKind::kPaperA, NetworkKind::kPaperB));
+
+// The output layer starts at zero; here all layers have a say.
+std::shared_ptr<CompactNetwork> LivelyCompact(bool covariance) {
+  torch::manual_seed(4);
+  const PinholeCamera camera{320, 240, 250, 260, 158, 121};
+  auto network = std::make_shared<CompactNetwork>(camera, covariance);
+  const torch::NoGradGuard no_gradients;
+  for (auto& parameter : network->named_parameters()) {
+    torch::Tensor value = parameter.value();
+    if (value.dim() == 1 && value.numel() > 1) value.normal_(0.5, 0.3);
+    if (value.abs().max().item<double>() == 0) value.normal_(0, 0.1);
+  }
+  network->eval();
+  return network;
+}
+
+TEST(CompactEngine, AnswersAsLibtorchDoes) {
+  const torch::InferenceMode inference;
+  const auto network = LivelyCompact(true);
+  // Moved a little from one to the next, so that there is something to be seen again.
+  const torch::Tensor scene = torch::nn::functional::interpolate(
+      torch::randn({1, 3, 40, 60}),
+      torch::nn::functional::InterpolateFuncOptions().size(std::vector<std::int64_t>{280, 400}));
+  std::vector<torch::Tensor> views;
+  for (std::int64_t i = 0; i < 4; ++i) {
+    views.push_back(scene[0].slice(1, 5 * i, 5 * i + 240).slice(2, 9 * i, 9 * i + 320));
+  }
+  const torch::Tensor images = torch::stack(views);
+  const std::vector<ImagePair> pairs = {{0, 1}, {0, 2}, {3, 1}};
+  std::vector<torch::Tensor> live, key;
+  for (const ImagePair& pair : pairs) {
+    live.push_back(images[pair.live]);
+    key.push_back(images[pair.key]);
+  }
+  const Prediction expected = network->forward(torch::stack(live), torch::stack(key));
+  ASSERT_GT((expected.motion - torch::eye(3, 4)).abs().max().item<double>(), 0.03);
+  const auto engine = network->MakeEngine(240, 320, Precision::kFloat32);
+  const PairAnswers answers = engine->Answer(images, pairs);
+  EXPECT_LT((answers.motion - expected.motion).abs().max().item<double>(), 5e-4);
+  EXPECT_LT((answers.whitening - expected.whitening).abs().max().item<double>(),
+            5e-4 * expected.whitening.abs().max().item<double>());
+  const PairAnswers one = engine->Answer(images, std::span(pairs).last(1));
+  EXPECT_LT((one.motion[0] - expected.motion[2]).abs().max().item<double>(), 5e-4);
+
+  const auto half = network->MakeEngine(240, 320, Precision::kBfloat16);
+  EXPECT_LT((half->Answer(images, pairs).motion - expected.motion).abs().max().item<double>(), 0.1);
+  const auto plain = LivelyCompact(false)->MakeEngine(240, 320, Precision::kFloat32);
+  EXPECT_FALSE(plain->Answer(images, pairs).whitening.defined());
+}
 
 TEST(ConvolutionTapsOf, LeavesOutWhatMeetsPaddingOnly) {
   // 3 x 3 over 2 x 3 cells with stride 2: the kernel's upper row is always outside.

@@ -56,10 +56,11 @@ dnnl::primitive_attr Rectified(float slope) {
 
 PackedConvolution::PackedConvolution(const torch::Tensor& weight, const torch::Tensor& bias,
                                      float slope, std::int64_t stride, std::int64_t padding,
-                                     Precision precision)
+                                     Precision precision, Result result)
     : weight_dims_(weight.sizes().vec()),
       stride_(stride),
       padding_(padding),
+      result_(result),
       type_(DataType(precision)),
       attributes_(Rectified(slope)),
       plain_weight_(weight),
@@ -70,13 +71,16 @@ PackedConvolution::Ready PackedConvolution::Prepare(const memory::desc& source) 
   const auto side = [&](std::size_t i) {
     return (in[i] + 2 * padding_ - weight_dims_[i]) / stride_ + 1;
   };
-  const memory::dims out = {in[0], weight_dims_[0], side(2), side(3)};
+  const memory::dims dims = {in[0], weight_dims_[0], side(2), side(3)};
+  const memory::desc out =
+      result_ == Result::kPacked
+          ? memory::desc(dims, type_, memory::format_tag::any)
+          : memory::desc(dims, memory::data_type::f32, memory::format_tag::nhwc);
   const memory::dims strides = {stride_, stride_}, padding = {padding_, padding_};
   const auto describe = [&](const memory::desc& weights) {
     return dnnl::convolution_forward::primitive_desc(
         {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, weights,
-         bias_.get_desc(), memory::desc(out, type_, memory::format_tag::any), strides, padding,
-         padding},
+         bias_.get_desc(), out, strides, padding, padding},
         attributes_, OnednnEngine());
   };
   if (plain_weight_.defined()) {

@@ -29,11 +29,15 @@ dnnl::primitive_attr Rectified(float slope);
 
 class PackedConvolution {
  public:
+  // The order of the result's values: oneDNN's own, or channels last and 32-bit floats.
+  enum class Result { kPacked, kChannelsLast };
+
   // weight [O, I, h, w], bias [O].
   PackedConvolution(const torch::Tensor& weight, const torch::Tensor& bias, float slope,
-                    std::int64_t stride, std::int64_t padding, Precision precision);
+                    std::int64_t stride, std::int64_t padding, Precision precision,
+                    Result result = Result::kPacked);
 
-  // source [N, I, H, W] in any order; the result is in oneDNN's, and lives until the next call.
+  // source [N, I, H, W] in any order; the result lives until the next call.
   const dnnl::memory& Run(const dnnl::memory& source);
 
  private:
@@ -46,6 +50,7 @@ class PackedConvolution {
 
   dnnl::memory::dims weight_dims_;
   std::int64_t stride_, padding_;
+  Result result_;
   dnnl::memory::data_type type_;
   dnnl::primitive_attr attributes_;
   torch::Tensor plain_weight_, plain_bias_;  // let go once packed

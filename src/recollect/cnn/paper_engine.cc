@@ -130,8 +130,7 @@ const memory& PaperEngine::Product(Wide& layer, const memory& cells, std::int64_
   return layer.product.Run(rows);
 }
 
-torch::Tensor PaperEngine::KeyframeFromLive(const torch::Tensor& images,
-                                            std::span<const ImagePair> pairs) {
+PairAnswers PaperEngine::Answer(const torch::Tensor& images, std::span<const ImagePair> pairs) {
   const std::lock_guard lock(mutex_);
   const auto batch = static_cast<std::int64_t>(pairs.size());
   memory now = ToOnednn(images, type_);
@@ -149,7 +148,7 @@ torch::Tensor PaperEngine::KeyframeFromLive(const torch::Tensor& images,
   now = Reordered(now, {now.get_desc().dims(), memory::data_type::f32, memory::format_tag::nc});
   OnednnStream().wait();
   const torch::Tensor rows = torch::from_blob(now.get_data_handle(), {batch, last_weight_.size(0)});
-  return Se3Layer(torch::addmm(last_bias_, rows, last_weight_));
+  return {Se3Layer(torch::addmm(last_bias_, rows, last_weight_)), {}};
 }
 
 }  // namespace recollect::cnn

@@ -18,8 +18,7 @@ class PaperEngine : public PairEngine {
   PaperEngine(torch::nn::Sequential branch, torch::nn::Sequential top, std::int64_t image_rows,
               std::int64_t image_columns, Precision precision);
 
-  torch::Tensor KeyframeFromLive(const torch::Tensor& images,
-                                 std::span<const ImagePair> pairs) override;
+  PairAnswers Answer(const torch::Tensor& images, std::span<const ImagePair> pairs) override;
 
  private:
   // A layer as a product: the cells it takes of its input, then the product.

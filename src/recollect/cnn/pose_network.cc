@@ -65,11 +65,7 @@ Prepared Prepare(const ModelInfo& info, std::span<const CropPair> pairs) {
   return prepared;
 }
 
-struct Answers {
-  torch::Tensor motion, whitening;  // as in Prediction
-};
-
-Answers Forward(PairNetwork& network, const Prepared& prepared) {
+PairAnswers Forward(PairNetwork& network, const Prepared& prepared) {
   const torch::Device device = network.parameters().front().device();
   std::vector<torch::Tensor> live, key;
   for (const ImagePair& pair : prepared.pairs) {
@@ -171,7 +167,6 @@ std::vector<RelativeEstimate> PoseNetwork::Estimate(std::span<const CropPair> pa
   return Ask(pairs, info_.covariance_scale.has_value());
 }
 
-// Engines know motions only: with the covariance the network itself answers.
 std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
                                                bool covariance) const {
   const torch::InferenceMode inference;
@@ -180,13 +175,10 @@ std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
   for (std::size_t from = 0; from < pairs.size(); from += kBatch) {
     const Prepared prepared =
         Prepare(info_, pairs.subspan(from, std::min(kBatch, pairs.size() - from)));
-    PairEngine* engine = covariance ? nullptr : engine_->Get(*network_, info_.crop);
-    Answers out;
-    if (engine != nullptr) {
-      out.motion = engine->KeyframeFromLive(torch::stack(prepared.images), prepared.pairs);
-    } else {
-      out = Forward(*network_, prepared);
-    }
+    PairEngine* engine = engine_->Get(*network_, info_.crop);
+    PairAnswers out = engine != nullptr
+                          ? engine->Answer(torch::stack(prepared.images), prepared.pairs)
+                          : Forward(*network_, prepared);
     out.motion = out.motion.contiguous();
     if (covariance) out.whitening = out.whitening.contiguous();
     for (std::int64_t i = 0; i < out.motion.size(0); ++i) {
