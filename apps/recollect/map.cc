@@ -23,8 +23,11 @@ struct Options {
   bool geometry = true, calibrate = true;
 };
 
-// How sure the map's answers are, where there is enough of it to tell.
+// How sure the map's answers are, where there is enough of it to tell: poses, then places.
 void Calibrate(const Options& options, ThreadPool& pool) {
+  if (Map::Open(options.map).HasGeometry()) {
+    matching::CalibrateMap(options.map, pool, TerminalProgress());
+  }
   if (options.calibrate && Map::Open(options.map).size() >= 3) {
     CalibrateRecognition(options.map, pool, TerminalProgress());
   }
@@ -104,7 +107,6 @@ void AddMap(CLI::App& app) {
     create->create.network.seed = create->common.seed;
     if (create->geometry) create->create.geometry = matching::LandmarkSource();
     CreateMap(create->map, create->laps.Read(), create->create, pool, TerminalProgress());
-    if (create->geometry) matching::CalibrateMap(create->map, pool, TerminalProgress());
     Calibrate(*create, pool);
     Show(*create);
   });
@@ -119,7 +121,7 @@ void AddMap(CLI::App& app) {
       ->default_str("true");
   const auto calibrate_flag = [](CLI::App& to, Options& options) {
     to.add_flag("--calibrate,!--no-calibrate", options.calibrate,
-                "measure on the mapped laps how sure answers are (see map calibrate)")
+                "measure on the mapped laps how sure places are (see map calibrate)")
         ->default_str("true");
   };
   calibrate_flag(*command, *create);
@@ -129,9 +131,6 @@ void AddMap(CLI::App& app) {
   command = AddCommand(*map, "add", "Append laps to a map", add->common, [add] {
     ThreadPool pool(add->common.threads);
     AddToMap(add->map, add->laps.Read(), pool, TerminalProgress(), matching::LandmarkSource());
-    if (Map::Open(add->map).HasGeometry()) {
-      matching::CalibrateMap(add->map, pool, TerminalProgress());
-    }
     Calibrate(*add, pool);
     Show(*add);
   });
@@ -145,7 +144,7 @@ void AddMap(CLI::App& app) {
                        "changed light and viewpoint - how sure answers are, and keep it in the map",
                        again->common, [again] {
                          ThreadPool pool(again->common.threads);
-                         CalibrateRecognition(again->map, pool, TerminalProgress());
+                         Calibrate(*again, pool);
                          Show(*again);
                        });
   command->add_option("map", again->map, "the map")->required()->type_name("MAP");

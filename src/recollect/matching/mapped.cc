@@ -32,6 +32,7 @@ MappedFrames FramesOf(const Map& map) {
   frames.camera = map.description().camera.left;
   for (int key = 0; key < map.size(); ++key) {
     frames.world_from_camera.push_back(map.At(key).world_from_camera);
+    frames.lap.push_back(static_cast<int>(map.At(key).lap));
   }
   frames.landmarks = [&map](int key) {
     const auto bytes = map.Geometry(key);

@@ -98,10 +98,11 @@ void AddPrior(const PosePrior& prior, const SE3& pose, NormalEquations& sum) {
 }
 
 // The covariance of the sum of the gradients, as they scatter from cluster to cluster (see
-// Observation; -1 is a cluster by itself), and how many clusters there are.
+// Observation; -1 is a cluster by itself), and how many clusters there are. spent: degrees of
+// freedom that the pose took.
 std::pair<Matrix6d, double> Scatter(std::span<const Observation> observations,
                                     const std::vector<Vector6d>& gradients,
-                                    int Observation::*cluster) {
+                                    int Observation::*cluster, int spent) {
   std::vector<std::size_t> order(observations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto of = [&](std::size_t i) { return observations[i].*cluster; };
@@ -119,19 +120,23 @@ std::pair<Matrix6d, double> Scatter(std::span<const Observation> observations,
     scatter += together * together.transpose();
     ++clusters;
   }
-  // Six of the degrees of freedom were spent on the pose.
-  return {scatter * (clusters / std::max(1.0, clusters - 6)), clusters};
+  return {scatter * (clusters / std::max(1.0, clusters - spent)), clusters};
 }
 
 // Few features tell little of six dimensions: it is as if some more had scattered as the Hessian
 // says.
 Matrix6d Scatter(std::span<const Observation> observations, const Matrix6d& hessian,
                  const std::vector<Vector6d>& gradients) {
-  const auto [by_feature, features] = Scatter(observations, gradients, &Observation::feature);
+  const auto [by_feature, features] = Scatter(observations, gradients, &Observation::feature, 6);
   Matrix6d scatter =
       (features * by_feature + kExpectedFeatures * hessian) / (features + kExpectedFeatures);
-  const bool mapped = !observations.empty() && observations.front().key_frame >= 0;
-  if (mapped) scatter += Scatter(observations, gradients, &Observation::key_frame).first;
+  if (observations.empty()) return scatter;
+  if (observations.front().key_frame >= 0) {
+    scatter += Scatter(observations, gradients, &Observation::key_frame, 6).first;
+  }
+  if (observations.front().lap >= 0) {  // there are few, whose gradients make up zero together
+    scatter += Scatter(observations, gradients, &Observation::lap, 1).first;
+  }
   return scatter;
 }
 

@@ -17,7 +17,7 @@ struct Observation {
   Eigen::Vector2d pixel;
   double pixel_sigma = 1;  // of `pixel`
   // Of the live image, and of the map: observations of one err together; -1: each by itself.
-  int feature = -1, key_frame = -1;
+  int feature = -1, key_frame = -1, lap = -1;
 };
 
 // What is known of the pose beforehand; its mean is world_from_camera, its covariance as in
@@ -54,10 +54,10 @@ Eigen::Vector2d Residual(const Observation& observation, const PinholeCamera& ca
 // as a camera at `start` sees it. nullopt where the observations do not fix all six degrees of
 // freedom or none lies before the camera.
 //
-// The covariance rests on how far the residuals really scatter, from feature to feature and from
-// key frame to key frame (the sandwich of Huber 1967, by clusters), rather than on how far they
-// were told to: what errs together, or more or less than was thought, is counted as it is. The
-// fewer features, the more it leans on the latter.
+// The covariance rests on how far the residuals really scatter, from feature to feature, from key
+// frame to key frame and from lap to lap (the sandwich of Huber 1967, by clusters), rather than on
+// how far they were told to: what errs together, or more or less than was thought, is counted as it
+// is. The fewer features, the more it leans on the latter.
 std::optional<RefinedPose> RefinePose(std::span<const Observation> observations,
                                       const PinholeCamera& camera, const SE3& start,
                                       const RefineOptions& options = {},

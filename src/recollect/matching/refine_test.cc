@@ -127,25 +127,27 @@ TEST(RefinePose, CovarianceHoldsWhereFeaturesErrTogetherAndMoreThanWasTold) {
   EXPECT_LT(mean, 12);  // the inverse Hessian alone makes it 96
 }
 
-// All landmarks of a key frame are displaced alike, as by an error of its own pose.
-TEST(RefinePose, CovarianceHoldsWhereKeyFramesErrAsAWhole) {
+// All landmarks of a key frame, or of a lap, are displaced alike, as by an error of its own pose or
+// by the light of its day.
+TEST(RefinePose, CovarianceHoldsWherePartsOfTheMapErrAsAWhole) {
   Random random(8);
-  const auto mean = [&](bool told) {
+  const auto mean = [&](int parts, int Observation::*told) {
     return MeanSquaredDeviation(random, [&](const SE3& pose) {
       std::vector<Observation> seen;
-      for (int key = 0; key < 10; ++key) {
-        const auto part = Look(pose, 40, 0.5, random);
+      for (int number = 0; number < parts; ++number) {
+        const auto part = Look(pose, 400 / parts, 0.5, random);
         const Eigen::Vector3d error(random.Normal(), random.Normal(), random.Normal());
         for (Observation o : part) {
           o.p_world += 0.1 * error;
-          if (told) o.key_frame = key;
+          if (told != nullptr) o.*told = number;
           seen.push_back(o);
         }
       }
       return seen;
     });
   };
-  EXPECT_LT(mean(true), mean(false) / 4);
+  EXPECT_LT(mean(10, &Observation::key_frame), mean(10, nullptr) / 4);
+  EXPECT_LT(mean(6, &Observation::lap), mean(6, nullptr) / 4);
 }
 
 TEST(RefinePose, RefusesWhatDoesNotFixAPose) {

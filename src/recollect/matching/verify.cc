@@ -250,6 +250,9 @@ std::optional<Verified> RefineFrom(const MappedFrames& map, const Features& live
                   options.guided_likeness, parts[i]);
     });
     for (const auto& part : parts) matches.insert(matches.end(), part.begin(), part.end());
+    for (Observation& o : matches) {
+      if (!map.lap.empty()) o.lap = map.lap[static_cast<std::size_t>(o.key_frame)];
+    }
     if (static_cast<int>(matches.size()) < options.min_matches) return std::nullopt;
     ShareFeatures(live, matches);
     // Matches are looked for again from the first round's pose: it need not be the very last word.

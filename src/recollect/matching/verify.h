@@ -43,6 +43,7 @@ struct MappedFrames {
   PinholeCamera camera;
   std::vector<SE3> world_from_camera;
   std::function<Landmarks(int key)> landmarks;
+  std::vector<int> lap;      // by key frame: which lap it is of; empty: not known
   std::vector<char> hidden;  // by key frame: not to be used; empty: all may be
 };
 
