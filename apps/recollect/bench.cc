@@ -9,6 +9,7 @@
 #include "laps.h"
 #include "localizer_flags.h"
 #include "recollect/benchmark/cnn_bench.h"
+#include "recollect/benchmark/features_bench.h"
 #include "recollect/benchmark/pipeline_bench.h"
 #include "recollect/benchmark/search_bench.h"
 #include "recollect/core/error.h"
@@ -66,6 +67,30 @@ void AddPipeline(CLI::App& bench) {
   flags->laps.AddTo(*command);
   command->add_option("--images", flags->options.images, "so many, evenly spread over the lap")
       ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+}
+
+struct FeaturesFlags {
+  Common common;
+  LapFlags laps;
+  FeaturesBenchOptions options;
+};
+
+void AddFeatures(CLI::App& bench) {
+  const auto flags = std::make_shared<FeaturesFlags>();
+  CLI::App* command =
+      AddCommand(bench, "features", "Features and matching, beside OpenCV, on one thread",
+                 flags->common, [flags] {
+                   const std::vector<Lap> laps = flags->laps.Read();
+                   Require(laps.size() == 1, "--lap",
+                           fmt::format("{} laps where one is looked at", laps.size()));
+                   const nlohmann::json figures = RunFeaturesBench(laps.front(), flags->options);
+                   fmt::print("{}", DescribeFeaturesBench(figures));
+                   WriteFigures(flags->common, figures);
+                 });
+  flags->laps.AddTo(*command);
+  command->add_option("--images", flags->options.images, "so many, evenly spread over the lap")
+      ->check(CLI::Range(2, 1'000'000))
       ->capture_default_str();
 }
 
@@ -139,6 +164,7 @@ void AddBench(CLI::App& app) {
   search->add_flag("--faiss,!--no-faiss", options.faiss, "measure FAISS, too");
   AddWnnFlags(*search, options.corpus.network);
   AddPipeline(*bench);
+  AddFeatures(*bench);
   AddCnn(*bench);
 }
 

@@ -1,0 +1,36 @@
+#include "recollect/benchmark/features_bench.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "recollect/core/error.h"
+#include "recollect/testing/street.h"
+
+namespace recollect {
+namespace {
+
+TEST(FeaturesBench, WritesEveryFigure) {
+  const auto folder = std::filesystem::temp_directory_path() / "recollect_features_bench";
+  const Lap lap = testing::DriveStreet(folder, {});
+  const int threads = cv::getNumThreads();
+  const nlohmann::json figures = RunFeaturesBench(lap, {.images = 3});
+  cv::setNumThreads(threads);
+  for (const char* step : {"blur", "points", "descriptors", "match"}) {
+    EXPECT_GT(figures["ms"][step]["ours"], 0) << step;
+    EXPECT_GT(figures["ms"][step]["opencv"], 0) << step;
+    EXPECT_GT(figures["ratio"][step], 0) << step;
+  }
+  for (const char* step : {"blur", "match"}) {
+    EXPECT_GT(figures["share_of_peak"][step], 0) << step;
+    EXPECT_LT(figures["share_of_peak"][step], 1.5) << step;
+  }
+  EXPECT_FALSE(DescribeFeaturesBench(figures).empty());
+  EXPECT_THROW(RunFeaturesBench(Lap{}), Error);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace recollect
