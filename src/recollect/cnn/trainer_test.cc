@@ -271,6 +271,7 @@ TEST_F(TrainerTest, PutsACalibratedCovarianceOnAModel) {
   EXPECT_NEAR(*figures.inside_95, 0.95, 1.01 / static_cast<double>(count));
   EXPECT_NEAR(*figures.inside_95, *network.info().validation.inside_95, 1e-12);
   EXPECT_NE(second.curve.back().likelihood, 0);
+  EXPECT_GT(network.info().steps, 0);  // not the fresh one, however good the model's motions were
   EXPECT_NE(ReadFile(options.csv).find(",likelihood"), std::string::npos);
 }
 
