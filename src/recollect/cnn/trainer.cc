@@ -129,9 +129,10 @@ class Trainer {
       copy->to(device_);
       average_.emplace(std::move(copy), *network_, options.average);
     }
-    adam_ =
-        std::make_unique<Adam>(*trained_, AdamOptions{.weight_decay = options.weight_decay,
-                                                      .gradient_limit = options.gradient_limit});
+    adam_ = std::make_unique<Adam>(
+        *trained_, AdamOptions{.weight_decay = options.weight_decay,
+                               .gradient_limit = options.gradient_limit,
+                               .apart = fmt::format("network.{}", kCovarianceWeights)});
   }
 
   TrainResult Run() {
