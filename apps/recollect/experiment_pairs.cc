@@ -5,7 +5,7 @@
 #include "command.h"
 #include "commands.h"
 #include "laps.h"
-#include "recollect/cnn/pair_errors.h"
+#include "recollect/cnn/fused_errors.h"
 
 namespace recollect::app {
 namespace {
@@ -16,6 +16,7 @@ struct PairsFlags {
   std::vector<std::string> live;
   LapFlags laps;
   cnn::PairOptions pairs;
+  int fuse = 0;  // key frames whose answers are fused; 0: none
 };
 
 void RunPairs(const PairsFlags& flags) {
@@ -46,7 +47,20 @@ void RunPairs(const PairsFlags& flags) {
     fmt::print("inside the 95 % ellipsoid: {:.1f} % of poses, {:.1f} % of positions\n",
                100 * *figures.inside_95, 100 * *figures.position_inside_95);
   }
-  WriteFigures(flags.common, nlohmann::json::parse(cnn::ToJson(figures)));
+  nlohmann::json json = nlohmann::json::parse(cnn::ToJson(figures));
+  if (flags.fuse > 0) {
+    json["fused"] = nlohmann::json::array();
+    fmt::print("nearest key frames   position mean, 95 %     heading 95 %\n");
+    for (const cnn::PairErrors& errors :
+         cnn::EvaluateNearest(network, data, flags.fuse, progress)) {
+      const cnn::PairFigures fused = errors.Figures();
+      json["fused"].push_back(nlohmann::json::parse(cnn::ToJson(fused)));
+      fmt::print("{:>18}   {:6.3f} m, {:6.3f} m   {:6.2f} deg   ({} live frames)\n",
+                 json["fused"].size(), fused.position_mean_m, fused.position_p95_m,
+                 fused.heading_p95_deg, fused.pairs);
+    }
+  }
+  WriteFigures(flags.common, json);
 }
 
 }  // namespace
@@ -64,6 +78,11 @@ void AddExperimentPairs(CLI::App& experiment) {
       ->capture_default_str();
   command->add_option("--key-spacing", flags->pairs.key_spacing_m,
                       "metres between key frames; 0: all frames are key frames");
+  command
+      ->add_option(
+          "--fuse", flags->fuse,
+          "errors also of the answers from the nearest 1, 2, ... so many key frames, fused")
+      ->check(CLI::Range(1, 100));
 }
 
 }  // namespace recollect::app

@@ -3,6 +3,7 @@
 #include <ATen/Parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <numeric>
@@ -41,42 +42,51 @@ double SumOfSquares(const torch::Tensor& gradient) {
 
 Adam::Adam(torch::nn::Module& network, const AdamOptions& options) : options_(options) {
   for (const auto& item : network.named_parameters()) {
+    const bool apart = !options.apart.empty() && item.key().starts_with(options.apart);
     slots_.push_back({item.key(), item.value(), torch::zeros_like(item.value()),
-                      torch::zeros_like(item.value())});
+                      torch::zeros_like(item.value()), apart ? 1U : 0U});
   }
+}
+
+AdamRates Adam::Rates(double learning_rate, double gradient_square) const {
+  double scale = 1;
+  if (options_.gradient_limit > 0) {
+    scale = std::min(1.0, options_.gradient_limit / std::sqrt(gradient_square + 1e-20));
+  }
+  const double correction1 = 1 - std::pow(options_.beta1, step_);
+  const double correction2 = 1 - std::pow(options_.beta2, step_);
+  return {.beta1 = static_cast<float>(options_.beta1),
+          .beta2 = static_cast<float>(options_.beta2),
+          .epsilon = static_cast<float>(options_.epsilon),
+          .gradient_scale = static_cast<float>(scale),
+          .keep = static_cast<float>(1 - learning_rate * options_.weight_decay),
+          .step = static_cast<float>(learning_rate / correction1),
+          .root_scale = static_cast<float>(1 / std::sqrt(correction2))};
 }
 
 bool Adam::Step(double learning_rate) {
   const torch::NoGradGuard no_gradients;
-  double square = 0;
+  std::array<double, 2> squares{};
   for (const Slot& slot : slots_) {
-    if (slot.parameter.grad().defined()) square += SumOfSquares(slot.parameter.grad());
+    const torch::Tensor& gradient = slot.parameter.grad();
+    if (gradient.defined()) squares[slot.group] += SumOfSquares(gradient);
   }
-  if (!std::isfinite(square)) {
+  if (!std::isfinite(squares[0] + squares[1])) {
     for (Slot& slot : slots_) slot.parameter.mutable_grad().reset();
     return false;
   }
   ++step_;
-  double scale = 1;
-  if (options_.gradient_limit > 0) {
-    scale = std::min(1.0, options_.gradient_limit / std::sqrt(square + 1e-20));
+  std::array<AdamRates, 2> rates;
+  for (std::size_t group = 0; group < rates.size(); ++group) {
+    rates[group] = Rates(learning_rate, squares[group]);
   }
-  const double correction1 = 1 - std::pow(options_.beta1, step_);
-  const double correction2 = 1 - std::pow(options_.beta2, step_);
-  const AdamRates rates{.beta1 = static_cast<float>(options_.beta1),
-                        .beta2 = static_cast<float>(options_.beta2),
-                        .epsilon = static_cast<float>(options_.epsilon),
-                        .gradient_scale = static_cast<float>(scale),
-                        .keep = static_cast<float>(1 - learning_rate * options_.weight_decay),
-                        .step = static_cast<float>(learning_rate / correction1),
-                        .root_scale = static_cast<float>(1 / std::sqrt(correction2))};
   for (Slot& slot : slots_) {
     torch::Tensor& gradient = slot.parameter.mutable_grad();
     if (!gradient.defined()) continue;
     if (LieAlike({slot.parameter, slot.mean, slot.square, gradient})) {
-      StepInOnePass(slot, gradient, rates);
+      StepInOnePass(slot, gradient, rates[slot.group]);
     } else {
-      StepByTensors(slot, gradient, rates);
+      StepByTensors(slot, gradient, rates[slot.group]);
     }
     gradient.reset();
   }

@@ -16,6 +16,9 @@ struct AdamOptions {
   double weight_decay = 0;  // decoupled (AdamW), times the learning rate
   double gradient_limit =
       0;  // gradients longer than this, over all parameters, are scaled; 0: none
+  // Parameters whose names begin with this are bounded by themselves: what trains beside the others
+  // is not to change their steps. Empty: no such parameters.
+  std::string apart = {};
 };
 
 // Adam (Kingma and Ba 2015), AdamW with weight decay. Unlike torch's its whole state can be put in
@@ -36,7 +39,10 @@ class Adam {
   struct Slot {
     std::string name;
     torch::Tensor parameter, mean, square;
+    std::size_t group;  // 0, or 1 for those apart
   };
+  // Of the step that is being made, for parameters whose gradient has that squared length.
+  AdamRates Rates(double learning_rate, double gradient_square) const;
   static void StepInOnePass(Slot& slot, const torch::Tensor& gradient, const AdamRates& rates);
   static void StepByTensors(Slot& slot, const torch::Tensor& gradient, const AdamRates& rates);
 

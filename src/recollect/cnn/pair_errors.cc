@@ -52,6 +52,14 @@ std::optional<double> ShareBelow(const std::vector<double>& values, double bound
 
 }  // namespace
 
+void PairErrors::Add(const SE3& predicted, const SE3& truth) {
+  // The key frame's pose is common to both, so errors show in its frame as in the world.
+  position_m.push_back((predicted.translation() - truth.translation()).norm());
+  heading_deg.push_back(HeadingDegrees(predicted, truth));
+  no_motion_m.push_back(truth.translation().norm());
+  no_motion_heading_deg.push_back(HeadingDegrees(SE3(), truth));
+}
+
 double PairErrors::CalibratingScale() const {
   if (pose_square.empty()) return 1;
   // A little more than needed: rounding is not to put the last one outside.
@@ -99,13 +107,9 @@ PairErrors EvaluatePairs(const PoseNetwork& network, const PairData& data,
     }
     const std::vector<RelativeEstimate> answers = network.Estimate(crops);
     for (std::size_t i = 0; i < block.size(); ++i) {
-      // The key frame's pose is common to both, so errors show in its frame as in the world.
       const SE3 truth = data.KeyframeFromLive(data.pairs[block[i]]);
       const SE3& predicted = answers[i].keyframe_from_live;
-      errors.position_m.push_back((predicted.translation() - truth.translation()).norm());
-      errors.heading_deg.push_back(HeadingDegrees(predicted, truth));
-      errors.no_motion_m.push_back(truth.translation().norm());
-      errors.no_motion_heading_deg.push_back(HeadingDegrees(SE3(), truth));
+      errors.Add(predicted, truth);
       if (!answers[i].covariance) continue;
       const Vector6d x = (predicted.Inverse() * truth).Log();
       const Matrix6d& covariance = *answers[i].covariance;

@@ -18,6 +18,9 @@ struct PairErrors {
   // (six dimensions) and position (three) in standard deviations.
   std::vector<double> pose_square, position_square;
 
+  // The error of one more pair, keyframe_from_live both.
+  void Add(const SE3& predicted, const SE3& truth);
+
   // What covariances are to be multiplied by so that 95 % of these errors of pose, and no fewer,
   // are inside their 95 % ellipsoids; 1 where nothing is predicted.
   double CalibratingScale() const;

@@ -125,12 +125,13 @@ PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads, Pr
   return {info, network, precision};
 }
 
-void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network) {
+ModelInfo CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network) {
   const TensorFile file = ReadModel(model);
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), model.string());
   Require(info.network == kind, model.string(),
           fmt::format("is a network {} where {} is trained", Name(info.network), Name(kind)));
   CopyWeights(file, info, model.string(), network);
+  return info;
 }
 
 PoseNetwork PoseNetwork::Untrained(int image_width, int image_height) {

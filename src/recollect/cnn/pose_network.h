@@ -77,8 +77,8 @@ class PoseNetwork {
 };
 
 // Copies a model file's weights into a network of the same kind, made for any camera; where the
-// file's network predicts no covariance, the weights for that stay as they are. Throws Error as
-// PoseNetwork::Load does, and where the kinds differ.
-void CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network);
+// file's network predicts no covariance, the weights for that stay as they are. What the file says
+// of itself. Throws Error as PoseNetwork::Load does, and where the kinds differ.
+ModelInfo CopyWeights(const std::filesystem::path& model, NetworkKind kind, PairNetwork& network);
 
 }  // namespace recollect::cnn

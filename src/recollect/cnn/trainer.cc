@@ -109,7 +109,10 @@ class Trainer {
         ranks_(options.ranks) {
     torch::manual_seed(SubSeed(options.seed, 0));
     network_ = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
-    if (!options.start.empty()) CopyWeights(options.start, options.network, *network_);
+    if (!options.start.empty()) {
+      const ModelInfo start = CopyWeights(options.start, options.network, *network_);
+      fresh_covariance_ = PredictsCovariance() && !start.covariance_scale;
+    }
     Divisor divisor;
     if (ranks_.ranks() > 1) {
       divisor = [this](const torch::Tensor& weights) {
@@ -126,9 +129,10 @@ class Trainer {
       copy->to(device_);
       average_.emplace(std::move(copy), *network_, options.average);
     }
-    adam_ =
-        std::make_unique<Adam>(*trained_, AdamOptions{.weight_decay = options.weight_decay,
-                                                      .gradient_limit = options.gradient_limit});
+    adam_ = std::make_unique<Adam>(
+        *trained_, AdamOptions{.weight_decay = options.weight_decay,
+                               .gradient_limit = options.gradient_limit,
+                               .apart = fmt::format("network.{}", kCovarianceWeights)});
   }
 
   TrainResult Run() {
@@ -305,7 +309,8 @@ class Trainer {
     state_.curve.push_back(point);
     ++state_.without_gain;
     if (figures.position_mean_m < state_.best_m) {
-      state_.best_m = figures.position_mean_m;
+      // A covariance that has learnt nothing yet is kept only until there is another.
+      if (state_.step > 0 || !fresh_covariance_) state_.best_m = figures.position_mean_m;
       state_.without_gain = 0;
       PoseNetwork(Describe(figures, scale), Judged()).Save(options_.out);
     }
@@ -369,7 +374,7 @@ class Trainer {
   TrainingState state_;
   double rate_ = 0, step_seconds_ = 0, validation_seconds_ = 0;
   int bad_steps_ = 0;
-  bool shown_ = false;
+  bool shown_ = false, fresh_covariance_ = false;
   Stopwatch page_;  // since the live curve was last written
 };
 

@@ -14,10 +14,6 @@ namespace {
 const std::vector<float> kFirstLogWeights = {0, -3};
 constexpr int kStride = kCellPixels / kDepthStep;  // from the depth grid to the cell grid
 
-// The covariance shares no weights with anything else, so this only says how much its gradient
-// counts where the length of all gradients is bounded.
-constexpr double kLikelihoodWeight = 0.1;
-
 torch::Tensor EveryCell(const torch::Tensor& depth) {
   return depth.slice(1, 0, torch::nullopt, kStride).slice(2, 0, torch::nullopt, kStride);
 }
@@ -73,7 +69,7 @@ Losses TrainingLoss::operator()(const Prediction& prediction, const Batch& batch
   if (options_.kind == LossKind::kUncertainty) {
     losses.likelihood =
         LikelihoodLoss(prediction.motion.detach(), batch.motion, prediction.whitening);
-    losses.total = losses.total + kLikelihoodWeight * losses.likelihood;
+    losses.total = losses.total + losses.likelihood;  // whose weights nothing else has
   }
   if (!prediction.total.defined()) return losses;
 
