@@ -4,6 +4,7 @@
 
 #include "recollect/cnn/compact_network.h"
 #include "recollect/cnn/convolution_taps.h"
+#include "recollect/cnn/fixed_product.h"
 #include "recollect/cnn/pair_network.h"
 #include "recollect/cnn/paper_network.h"
 #include "recollect/cnn/pose_network.h"
@@ -53,6 +54,25 @@ TEST_P(PaperEngineTest, AnswersAsLibtorchDoes) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, PaperEngineTest,
                          ::testing::Values(NetworkKind::kPaperA, NetworkKind::kPaperB));
+
+TEST(FixedProduct, IsTheProductOnAllTails) {
+  torch::manual_seed(5);
+  for (const std::int64_t inputs : {1, 16, 37, 160}) {
+    for (const std::int64_t outputs : {1, 4, 70}) {
+      for (const std::int64_t rows : {1, 3, 4, 9}) {
+        const torch::Tensor weight = torch::randn({outputs, inputs}), bias = torch::randn(outputs);
+        const torch::Tensor source = torch::randn({rows, inputs});
+        FixedProduct product(weight, bias, 0.25F);
+        const dnnl::memory& result = product.Run(ToOnednn(source, dnnl::memory::data_type::f32));
+        const torch::Tensor sum = torch::addmm(bias, source, weight.t());
+        const torch::Tensor expected = torch::where(sum > 0, sum, 0.25 * sum);
+        const torch::Tensor got = torch::from_blob(result.get_data_handle(), {rows, outputs});
+        EXPECT_LT((got - expected).abs().max().item<double>(), 2e-4 * std::sqrt(inputs))
+            << inputs << " " << outputs << " " << rows;
+      }
+    }
+  }
+}
 
 // The output layer starts at zero; here all layers have a say.
 std::shared_ptr<CompactNetwork> LivelyCompact(bool covariance) {

@@ -63,7 +63,12 @@ PaperEngine::PaperEngine(torch::nn::Sequential branch, torch::nn::Sequential top
     const ListedLayer& layer = tops[i];
     const ConvolutionTaps taps = taps_of(layer);
     const torch::Tensor weight = ByTaps(layer.weight).narrow(1, taps.first_tap, taps.taps);
-    wide_.push_back({taps, {weight.flatten(1), layer.bias, layer.slope, precision}});
+    const torch::Tensor rows = weight.flatten(1);
+    if (precision == Precision::kFloat32) {
+      wide_.push_back({taps, FixedProduct(rows, layer.bias, layer.slope)});
+    } else {
+      wide_.push_back({taps, PackedProduct(rows, layer.bias, layer.slope, precision)});
+    }
   }
   Require(static_cast<std::int64_t>(wide_.front().taps.outputs.size()) ==
               wide_.front().taps.rows * wide_.front().taps.columns,
@@ -127,7 +132,8 @@ const memory& PaperEngine::Product(Wide& layer, const memory& cells, std::int64_
       to += count * value;
     }
   }
-  return layer.product.Run(rows);
+  return std::visit([&](auto& product) -> const memory& { return product.Run(rows); },
+                    layer.product);
 }
 
 PairAnswers PaperEngine::Answer(const torch::Tensor& images, std::span<const ImagePair> pairs) {

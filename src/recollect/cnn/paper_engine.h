@@ -1,9 +1,11 @@
 #pragma once
 
 #include <mutex>
+#include <variant>
 #include <vector>
 
 #include "recollect/cnn/convolution_taps.h"
+#include "recollect/cnn/fixed_product.h"
 #include "recollect/cnn/packed_layers.h"
 #include "recollect/cnn/pair_engine.h"
 
@@ -24,7 +26,7 @@ class PaperEngine : public PairEngine {
   // A layer as a product: the cells it takes of its input, then the product.
   struct Wide {
     ConvolutionTaps taps;
-    PackedProduct product;
+    std::variant<FixedProduct, PackedProduct> product;  // where floats are asked for, else
   };
   dnnl::memory Fuse(const dnnl::memory& features, std::span<const ImagePair> pairs) const;
   const dnnl::memory& Product(Wide& layer, const dnnl::memory& cells, std::int64_t batch) const;
