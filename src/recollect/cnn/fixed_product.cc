@@ -20,32 +20,48 @@ using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 
 std::int64_t Padded(std::int64_t inputs) { return (inputs + kLanes - 1) / kLanes * kLanes; }
 
-// sums[r][o] = source row r . weight row o, for up to kRows and kOutputs of them; both `stride`
-// numbers long. Rows and outputs beyond those there are repeat the last.
-RECOLLECT_FOR_EACH_PROCESSOR
-void Tile(const float* source, std::int64_t rows, const std::int16_t* weights, std::int64_t outputs,
-          std::int64_t stride, float* sums) {
-  const float* from[kRows];
+// sums[r][o] = source row r . weight row o, both `stride` numbers long. Outputs beyond those there
+// are repeat the last.
+template <std::int64_t rows>
+[[gnu::always_inline]] inline void TileOf(const float* source, const std::int16_t* weights,
+                                          std::int64_t outputs, std::int64_t stride, float* sums) {
   const std::int16_t* by[kOutputs];
-  for (std::int64_t r = 0; r < kRows; ++r) from[r] = source + std::min(r, rows - 1) * stride;
   for (std::int64_t o = 0; o < kOutputs; ++o) by[o] = weights + std::min(o, outputs - 1) * stride;
-  Floats total[kRows][kOutputs] = {};
+  Floats total[rows][kOutputs] = {};
   for (std::int64_t k = 0; k < stride; k += kLanes) {
-    Floats values[kRows];
-    for (std::int64_t r = 0; r < kRows; ++r) std::memcpy(&values[r], from[r] + k, sizeof(Floats));
+    Floats values[rows];
+    for (std::int64_t r = 0; r < rows; ++r) {
+      std::memcpy(&values[r], source + r * stride + k, sizeof(Floats));
+    }
     for (std::int64_t o = 0; o < kOutputs; ++o) {
       Shorts whole;
       std::memcpy(&whole, by[o] + k, sizeof whole);
       const Floats weight = __builtin_convertvector(whole, Floats);
-      for (std::int64_t r = 0; r < kRows; ++r) total[r][o] += values[r] * weight;
+      for (std::int64_t r = 0; r < rows; ++r) total[r][o] += values[r] * weight;
     }
   }
-  for (std::int64_t r = 0; r < kRows; ++r) {
+  for (std::int64_t r = 0; r < rows; ++r) {
     for (std::int64_t o = 0; o < kOutputs; ++o) {
       float sum = 0;
       for (std::int64_t lane = 0; lane < kLanes; ++lane) sum += total[r][o][lane];
       sums[r * kOutputs + o] = sum;
     }
+  }
+}
+
+// For 1 to kRows rows.
+RECOLLECT_FOR_EACH_PROCESSOR
+void Tile(const float* source, std::int64_t rows, const std::int16_t* weights, std::int64_t outputs,
+          std::int64_t stride, float* sums) {
+  switch (rows) {
+    case 1:
+      return TileOf<1>(source, weights, outputs, stride, sums);
+    case 2:
+      return TileOf<2>(source, weights, outputs, stride, sums);
+    case 3:
+      return TileOf<3>(source, weights, outputs, stride, sums);
+    default:
+      return TileOf<kRows>(source, weights, outputs, stride, sums);
   }
 }
 
