@@ -9,7 +9,7 @@
 
 namespace recollect::matching {
 
-// Features of an image by where they are.
+// Features of an image by where they are. `features` must outlive it.
 class PixelGrid {
  public:
   PixelGrid(const PinholeCamera& camera, const Features& features);

@@ -38,7 +38,7 @@ struct VerifyOptions {
   double guided_likeness = 0.68;  // cosine between descriptors, at least
 };
 
-// The key frames as verification sees them.
+// The key frames as verification sees them. `lap` and `hidden` are empty or as long as the poses.
 struct MappedFrames {
   PinholeCamera camera;
   std::vector<SE3> world_from_camera;
