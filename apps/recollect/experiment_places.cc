@@ -28,7 +28,7 @@ struct PlaceFlags {
   double spacing_m = 5, live_spacing_m = 1, within_m = 5, precision = 0.99;
   int from = 20;
   wnn::NetworkOptions network = wnn::RecollectNetwork();
-  wnn::SequenceOptions sequence;
+  wnn::SequenceOptions sequence{.history = 0};
 };
 
 double Share(const std::vector<PlaceAnswer>& answers, double PlaceAnswer::*error, double within,

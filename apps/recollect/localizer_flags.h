@@ -44,7 +44,7 @@ struct LocalizerFlags {
                                                                   {"fused", Relative::kFused}};
     LocalizerOptions options;
     options.relative = known.at(relative);
-    if (filter == "bayes") options.sequence.emplace();
+    if (filter == "bayes") options.sequence = wnn::SequenceOptions{.history = 0};
     return options;
   }
 };

@@ -21,7 +21,7 @@ class Draws {
   std::size_t next_ = 0;
 };
 
-// Roll and zoom about the centre, shear, shift.
+// Roll and zoom about the centre, shear, shift, bend.
 cv::Mat Moved(const cv::Mat& image, Draws& draws, const Perturbation& by) {
   const cv::Point2f centre(static_cast<float>(image.cols) / 2, static_cast<float>(image.rows) / 2);
   const double turn = draws.EitherWay(by.turn_deg), zoom = 1 + draws.EitherWay(by.scale);
@@ -31,8 +31,20 @@ cv::Mat Moved(const cv::Mat& image, Draws& draws, const Perturbation& by) {
   motion.at<double>(0, 2) -= shear * image.rows / 2;
   motion.at<double>(0, 2) += image.cols * draws.EitherWay(by.shift_x);
   motion.at<double>(1, 2) += image.cols * draws.EitherWay(by.shift_y);
-  cv::Mat seen;
-  cv::warpAffine(image, seen, motion, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::invertAffineTransform(motion, motion);
+  const double bend = draws.EitherWay(by.bend);
+  cv::Mat at(image.size(), CV_32FC2), seen;
+  for (int y = 0; y < image.rows; ++y) {
+    auto* row = at.ptr<cv::Vec2f>(y);
+    for (int x = 0; x < image.cols; ++x) {
+      const double u = x - double{centre.x}, bent = centre.x + u / (u < 0 ? 1 + bend : 1 - bend);
+      for (int i = 0; i < 2; ++i) {
+        row[x][i] = static_cast<float>(motion.at<double>(i, 0) * bent +
+                                       motion.at<double>(i, 1) * y + motion.at<double>(i, 2));
+      }
+    }
+  }
+  cv::remap(image, seen, at, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   const double blur = draws.Uniform(0, by.blur) * image.cols;
   if (blur > 0.2) cv::GaussianBlur(seen, seen, {}, blur);
   return seen;

@@ -25,7 +25,7 @@ double Distance(const cv::Mat& a, const cv::Mat& b) {
 }
 
 TEST(Perturbation, OfNothingChangesNothing) {
-  const Perturbation none{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  const Perturbation none{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_LT(Distance(Perturbed(Board(), 3, none), Board()), 1);
 }
 

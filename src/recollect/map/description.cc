@@ -52,6 +52,8 @@ json NetworkToJson(const wnn::NetworkOptions& network) {
           {"shift_y", network.shift_y},
           {"shift_step", network.shift_step},
           {"closer_step", network.closer_step},
+          {"parts_x", network.parts_x},
+          {"parts_y", network.parts_y},
           {"window_aspect", network.window_aspect},
           {"gaussian_synapses", network.gaussian_synapses},
           {"gaussian_sigma", network.gaussian_sigma},
@@ -75,6 +77,8 @@ wnn::NetworkOptions NetworkFromJson(const json& j) {
   j.at("shift_y").get_to(network.shift_y);
   j.at("shift_step").get_to(network.shift_step);
   network.closer_step = j.value("closer_step", 0);
+  network.parts_x = j.value("parts_x", 0);
+  network.parts_y = j.value("parts_y", 0);
   j.at("window_aspect").get_to(network.window_aspect);
   j.at("gaussian_synapses").get_to(network.gaussian_synapses);
   j.at("gaussian_sigma").get_to(network.gaussian_sigma);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "recollect/core/error.h"
 
@@ -11,6 +13,9 @@ namespace {
 // Places an image: standing, creeping between far-apart key frames, up to passing several at once.
 constexpr double kSpeeds[] = {0, 0.1, 0.2, 0.35, 0.6, 1, 1.5, 2.2, 3.2, 4.5};
 constexpr double kSpeedChange = 0.1;  // chance that speed goes one step up or down
+constexpr double kLeastNews = 0.1;    // share of an image's likelihood that counts without moving
+
+double News(double places) { return std::clamp(std::sqrt(std::abs(places)), kLeastNews, 1.0); }
 
 }  // namespace
 
@@ -22,6 +27,13 @@ BayesFilter::BayesFilter(const SequenceOptions& options, const Route& route)
     }
   }
   speeds_.insert(speeds_.end(), std::begin(kSpeeds), std::end(kSpeeds));
+  for (const double speed : speeds_) shares_.push_back(News(speed));
+  std::sort(shares_.begin(), shares_.end(), std::greater<>());
+  shares_.erase(std::unique(shares_.begin(), shares_.end()), shares_.end());
+  for (const double speed : speeds_) {
+    const auto share = std::find(shares_.begin(), shares_.end(), News(speed));
+    share_of_.push_back(static_cast<std::size_t>(share - shares_.begin()));
+  }
   Reset();
 }
 
@@ -79,10 +91,28 @@ void BayesFilter::Predict(State& state, std::optional<double> moved) const {
   state = std::move(next);
 }
 
-void BayesFilter::Correct(State& state, const std::vector<double>& likelihood) const {
+// Powers of likelihoods have a mean of one over all places: what tells nothing moves nothing.
+BayesFilter::Step BayesFilter::Seen(const Observation& observation) const {
+  const std::vector<double> likelihood = Likelihood(options_.votes, route_, observation);
+  Step step{{}, observation.moved};
+  const std::vector<double> moved = {observation.moved ? News(*observation.moved) : 1};
+  for (const double share : observation.moved ? moved : shares_) {
+    std::vector<double> power(likelihood.size());
+    std::transform(likelihood.begin(), likelihood.end(), power.begin(),
+                   [share](double one) { return std::pow(one, share); });
+    const double mean =
+        std::accumulate(power.begin(), power.end(), 0.0) / static_cast<double>(power.size());
+    for (double& one : power) one /= mean;
+    step.likelihoods.push_back(std::move(power));
+  }
+  return step;
+}
+
+void BayesFilter::Correct(State& state, const Step& step) const {
   double sum = 0;
-  for (auto& places : state) {
-    for (std::size_t i = 0; i < places.size(); ++i) sum += places[i] *= likelihood[i];
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    const auto& likelihood = step.likelihoods[step.likelihoods.size() > 1 ? share_of_[s] : 0];
+    for (std::size_t i = 0; i < likelihood.size(); ++i) sum += state[s][i] *= likelihood[i];
   }
   for (auto& places : state) {
     for (double& weight : places) weight /= sum;
@@ -90,14 +120,14 @@ void BayesFilter::Correct(State& state, const std::vector<double>& likelihood) c
 }
 
 std::vector<double> BayesFilter::Update(const Observation& observation) {
-  Step step{Likelihood(options_.votes, route_, observation), observation.moved};
+  Step step = Seen(observation);
   if (options_.history > 0) {
     steps_.push_back(std::move(step));
     if (steps_.size() > static_cast<std::size_t>(options_.history)) steps_.pop_front();
     state_ = Anywhere();
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       if (i > 0) Predict(state_, steps_[i].moved);
-      Correct(state_, steps_[i].likelihood);
+      Correct(state_, steps_[i]);
     }
   } else {
     if (state_.empty()) {
@@ -105,7 +135,7 @@ std::vector<double> BayesFilter::Update(const Observation& observation) {
     } else {
       Predict(state_, step.moved);
     }
-    Correct(state_, step.likelihood);
+    Correct(state_, step);
   }
   std::vector<double> belief(route_.next.size(), 0);
   for (const auto& places : state_) {

@@ -124,12 +124,13 @@ VoteModel FitVotes(const Route& route, std::span<const Trial> trials) {
   return best;
 }
 
-// Trials whose places follow each other.
+// Trials whose places follow each other, on a road that another lap has seen: how images of another
+// day err together is not told by changed copies of one day's.
 std::vector<std::vector<const Trial*>> RunsOf(const Route& route, std::span<const Trial> trials) {
   std::vector<std::vector<const Trial*>> runs;
   int last = -1;
   for (const Trial& trial : trials) {
-    if (trial.place < 0) continue;
+    if (trial.place < 0 || trial.exact.empty()) continue;
     const bool follows = last >= 0 && route.next[static_cast<std::size_t>(last)] == trial.place;
     if (!follows) runs.emplace_back();
     runs.back().push_back(&trial);
@@ -149,8 +150,7 @@ double BeliefInTruth(const Route& route, const std::vector<std::vector<const Tri
     for (const Trial* trial : run) {
       const auto belief = filter->Update({trial->histogram, trial->neurons, {}, {}});
       double right = 0;
-      const std::vector<int>& truth = trial->exact.empty() ? trial->right : trial->exact;
-      for (const int place : truth) right += belief[static_cast<std::size_t>(place)];
+      for (const int place : trial->exact) right += belief[static_cast<std::size_t>(place)];
       sum += std::log(std::max(right, kSmallest));
     }
   }

@@ -12,7 +12,7 @@ struct Trial {
   std::vector<LabelVotes> histogram;
   int neurons = 0;
   std::vector<int> right;  // places within one of the truth; empty: it lies nowhere on the route
-  std::vector<int> exact;  // of these the nearest ones, where it is known which
+  std::vector<int> exact;  // of these the nearest ones of other laps, where these saw the place
   int place = -1;          // of the mapped image that it is; -1: of none, or it lies nowhere
 };
 
@@ -43,8 +43,8 @@ Judged Judge(const Calibration& calibration, const Route& route,
 // the weights to whether their answers are right (logistic regression), and the thresholds to both
 // those trials and those from nowhere: at each, so many of the answers kept are right, and at most
 // the rest of the images from nowhere are kept. The model of sequences is fit to what a Bayes
-// filter believes of the truth, over trials whose places follow each other; without any such it is
-// the default. Throws Error without a trial that lies on the route.
+// filter believes of the truth, over trials whose places follow each other and were seen by other
+// laps; without any such it is the default. Throws Error without a trial that lies on the route.
 Calibration Calibrate(const Route& route, std::span<const Trial> trials);
 
 // Threshold for a wanted precision in [0, 1): the first of the table that promises as much, 1 where

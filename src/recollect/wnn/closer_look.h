@@ -16,8 +16,9 @@ namespace recollect::wnn {
 // The committee's second look: at a few entries only, but under displacements of the live image
 // finer than a search of the whole memory can afford. A neuron votes for every entry that lies
 // nearer to what it sees than entries usually do by kNearDeviations standard deviations, under the
-// displacement that it shares with the others, give or take one step. See docs/recognition.md, "A
-// closer look".
+// displacement that it shares with the others, give or take one step. Half its vote counts with
+// the whole committee, half with the part of the image that it lies in: a scene far away moves as
+// one, a wall nearby does not move with it. See docs/recognition.md, "A closer look".
 
 inline constexpr double kNearDeviations = 3;
 
@@ -27,24 +28,21 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
                                std::span<const int> displacements, std::span<const int> usual,
                                ThreadPool& pool);
 
-// An entry, and the displacement about which to look at it.
-struct Candidate {
-  int entry = 0;
-  int around = 0;
-};
 struct Look {
-  int votes = 0;
-  int displacement = 0;  // under which it got these; of equals the first
+  int halves =
+      0;  // half votes: of the whole image and of all parts; twice the former without parts
+  // Under which they were given: the whole image's, then each part's; of equals the first.
+  std::vector<int> displacements;
 };
-// By candidate, its votes under the displacement that gives most, among those at most `reach` steps
-// of the grid from its own.
+// By entry of `entries`, its votes under the displacements that give most. parts: as
+// Encoder::parts; empty: none.
 std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live,
-                             std::span<const int> near, std::span<const Candidate> candidates,
-                             int reach, ThreadPool& pool);
+                             std::span<const int> near, std::span<const int> entries,
+                             std::span<const int> parts, ThreadPool& pool);
 
-// By neuron, whether it gave one of a look's votes.
-std::vector<bool> VotersOf(const Memory& memory, const DisplacedPatterns& live,
-                           std::span<const int> near, const Candidate& candidate, int reach,
-                           const Look& look);
+// By neuron, how many of an entry's half votes are its own.
+std::vector<int> HalvesOf(const Memory& memory, const DisplacedPatterns& live,
+                          std::span<const int> near, int entry, std::span<const int> parts,
+                          std::span<const int> displacements);
 
 }  // namespace recollect::wnn

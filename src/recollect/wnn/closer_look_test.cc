@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "recollect/core/error.h"
@@ -34,10 +35,8 @@ struct Scenes {
     std::vector<int> all(static_cast<std::size_t>(memory.entries())), displacements;
     std::iota(all.begin(), all.end(), 0);
     for (int d = 0; d < grid.count(); d += 4) displacements.push_back(d);
-    std::vector<Candidate> candidates;
-    for (const int entry : all) candidates.push_back({entry, grid.count() / 2});
     const auto near = NearDistances(memory, patterns, displacements, all, pool);
-    return LookCloser(memory, patterns, near, candidates, 4, pool);
+    return LookCloser(memory, patterns, near, all, encoder.parts(), pool);
   }
   ThreadPool pool;
   NetworkOptions options = RecollectNetwork();
@@ -54,20 +53,22 @@ TEST(CloserLook, FindsTheDisplacementBetweenCoarseSteps) {
   const auto looks = scenes.LookAt(Moved(Scene(5), 1, 4, -2));
   for (int i = 0; i < 12; ++i) {
     if (i != 5) {
-      EXPECT_LT(looks[static_cast<std::size_t>(i)].votes, looks[5].votes / 3) << i;
+      EXPECT_LT(looks[static_cast<std::size_t>(i)].halves, looks[5].halves / 3) << i;
     }
   }
-  EXPECT_GT(looks[5].votes, scenes.options.neurons() / 2);
+  EXPECT_GT(looks[5].halves, scenes.options.neurons());
   // Of equal votes the first displacement is told.
-  EXPECT_NEAR(looks[5].displacement % 33, 16 + 2, 2);
-  EXPECT_NEAR(looks[5].displacement / 33, 8 - 1, 2);
+  EXPECT_NEAR(looks[5].displacements[0] % 33, 16 + 2, 2);
+  EXPECT_NEAR(looks[5].displacements[0] / 33, 8 - 1, 2);
 }
 
 TEST(CloserLook, TellsViewsOfOneSceneApart) {
   // A road of views: each entry is nearer to the scene by eight parts in a hundred than the one
   // before. Live ones are the same, darker and moved by
-  // half a coarse step (12 pixels of 320).
+  // half a coarse step (12 pixels of 320). Of the whole image: parts moved each in its own way
+  // make one of these views of the other.
   NetworkOptions options = RecollectNetwork();
+  options.parts_x = options.parts_y = 0;
   const auto right = [&](int closer_step) {
     options.closer_step = closer_step;
     ThreadPool pool(2);
@@ -94,13 +95,45 @@ TEST(CloserLook, TellsViewsOfOneSceneApart) {
   EXPECT_GT(closer, coarse);
 }
 
+TEST(CloserLook, FindsPlacesWhosePartsHaveMovedApart) {
+  // As on the other side of a street: what is left of the middle has moved one way, what is right
+  // of it the other way, and here and there something else stands.
+  Scenes scenes(12);
+  cv::Mat live = Moved(Scene(5), 1, -18, 4);
+  Moved(Scene(5), 1, 18, -4).colRange(160, 320).copyTo(live.colRange(160, 320));
+  for (const int x : {40, 230}) live(cv::Rect(x, 40, 50, 60)).setTo(cv::Scalar(90, 90, 90));
+  const auto looks = scenes.LookAt(live);
+  std::vector<int> parts = scenes.encoder.parts();
+  ASSERT_EQ(parts.size(), 576U);
+  EXPECT_EQ(*std::max_element(parts.begin(), parts.end()), 23);
+  // Both sides find their own displacement, 16 -+ 9 steps of 4 pixels of 640.
+  ASSERT_EQ(looks[5].displacements.size(), 25U);
+  int left = 0, right = 0;
+  for (std::size_t part = 0; part < 24; ++part) {
+    const int x = looks[5].displacements[1 + part] % 33;
+    (part % 8 < 4 ? left : right) += std::abs(x - (part % 8 < 4 ? 16 - 9 : 16 + 9)) <= 2;
+  }
+  EXPECT_GE(left, 9);
+  EXPECT_GE(right, 9);
+  // The whole image can agree with one side only.
+  scenes.options.parts_x = scenes.options.parts_y = 0;
+  scenes.encoder = Encoder(scenes.options, 320, 240, scenes.pool);
+  const auto whole = scenes.LookAt(live);
+  EXPECT_GT(looks[5].halves, 1.2 * whole[5].halves);
+  for (std::size_t i = 0; i < 12; ++i) {
+    if (i != 5) {
+      EXPECT_LT(looks[i].halves, looks[5].halves / 2) << i;
+    }
+  }
+}
+
 TEST(CloserLook, IsTheSameWithAnyNumberOfThreads) {
   Scenes one(8, 1), three(8, 3);
   const cv::Mat live = Moved(Scene(3), 1.05, 7, 3);
   const auto a = one.LookAt(live), b = three.LookAt(live);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].votes, b[i].votes);
-    EXPECT_EQ(a[i].displacement, b[i].displacement);
+    EXPECT_EQ(a[i].halves, b[i].halves);
+    EXPECT_EQ(a[i].displacements, b[i].displacements);
   }
 }
 

@@ -16,10 +16,11 @@ struct LabelVotes {
 // How a label was looked at under displacements.
 struct LabelView {
   int label = 0;
-  int entry = -1;        // of that label, the one that got these votes; -1: any of them
-  int displacement = 0;  // that its voters agree on; numbered by the grid of the look
-  int around = 0;        // the displacement about which a second look was taken
-  int votes = 0;
+  int entry = -1;  // of that label, the one that got these votes; -1: any of them
+  int halves = 0;  // half votes
+  // That its voters agree on, numbered by the grid of the look: those of the whole image, then,
+  // where a second look cuts it into parts, those of each part.
+  std::vector<int> displacements;
 };
 
 // What the committee of neurons recollects of an image (Forechi et al. 2018, section III-A).

@@ -18,7 +18,7 @@ constexpr int kUsual = 64;          // entries that tell how far entries usually
 
 // The best displacement by the votes there and half of those one step off, and these times two.
 LabelView Agreed(int label, const std::vector<int>& votes, const Displacements& grid) {
-  LabelView best{label, -1, 0, 0, 0};
+  LabelView best{label, -1, 0, {0}};
   for (int y = 0; y < grid.rows; ++y) {
     for (int x = 0; x < grid.columns; ++x) {
       int sum = votes[static_cast<std::size_t>(y * grid.columns + x)];
@@ -27,7 +27,7 @@ LabelView Agreed(int label, const std::vector<int>& votes, const Displacements& 
           sum += votes[static_cast<std::size_t>(b * grid.columns + a)];
         }
       }
-      if (sum > best.votes) best = {label, -1, y * grid.columns + x, 0, sum};
+      if (sum > best.halves) best = {label, -1, sum, {y * grid.columns + x}};
     }
   }
   return best;
@@ -58,58 +58,47 @@ std::vector<int> Spread(const Memory& memory, const EntrySet* allowed, int count
   return spread;
 }
 
-// Entries of the labels with most votes and of those around them, to be looked at about the
-// displacement of the most voted of these.
-std::vector<Candidate> Promising(const Memory& memory, const EntrySet* allowed, const Grids& grids,
-                                 const Recollection& recollection) {
-  std::map<int, int> around;  // by label
-  const std::span all(recollection.histogram);
-  const auto best = all.first(std::min(kLooks, all.size()));
-  for (const int reach : {0, kAround}) {
-    for (const LabelVotes& one : best) {
-      const auto& views = recollection.first_look;
-      const auto own =
-          std::lower_bound(views.begin(), views.end(), one.label,
-                           [](const LabelView& view, int label) { return view.label < label; });
-      for (int label = one.label - reach; label <= one.label + reach; ++label) {
-        if (label < 0 || label >= memory.labels()) continue;
-        around.emplace(label, grids.Closer(own->displacement));
-      }
-    }
+// Entries of the labels with most votes and of those around them, by rising label.
+std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
+                           const std::vector<LabelVotes>& histogram) {
+  std::set<int> labels;
+  for (std::size_t i = 0; i < std::min(kLooks, histogram.size()); ++i) {
+    const int first = std::max(0, histogram[i].label - kAround);
+    const int last = std::min(memory.labels() - 1, histogram[i].label + kAround);
+    for (int label = first; label <= last; ++label) labels.insert(label);
   }
-  std::vector<Candidate> candidates;
-  for (const auto& [label, displacement] : around) {
+  std::vector<int> entries;
+  for (const int label : labels) {
     for (const int entry : memory.EntriesOf(label)) {
-      if (!allowed || allowed->Allows(entry)) candidates.push_back({entry, displacement});
+      if (!allowed || allowed->Allows(entry)) entries.push_back(entry);
     }
   }
-  return candidates;
+  return entries;
 }
 
 // Adds the votes of a closer look.
 void LookAgain(const Memory& memory, const DisplacedPatterns& live, const Grids& grids,
-               ThreadPool& pool, const SearchOptions& search, Recollection& recollection) {
-  const auto candidates = Promising(memory, search.allowed, grids, recollection);
+               std::span<const int> parts, ThreadPool& pool, const SearchOptions& search,
+               Recollection& recollection) {
+  const auto entries = Promising(memory, search.allowed, recollection.histogram);
   std::vector<int> displacements;
   for (int d = 0; d < grids.first.count(); ++d) displacements.push_back(grids.Closer(d));
   recollection.near =
       NearDistances(memory, live, displacements, Spread(memory, search.allowed, kUsual), pool);
-  const std::vector<Look> looks =
-      LookCloser(memory, live, recollection.near, candidates, grids.closer.columns, pool);
-  std::map<int, int> votes;  // by label
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const int label = memory.label(candidates[i].entry);
-    const LabelView view{label, candidates[i].entry, looks[i].displacement, candidates[i].around,
-                         looks[i].votes};
-    auto& views = recollection.second_look;
+  const std::vector<Look> looks = LookCloser(memory, live, recollection.near, entries, parts, pool);
+  auto& views = recollection.second_look;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const int label = memory.label(entries[i]);
+    const LabelView view{label, entries[i], looks[i].halves, looks[i].displacements};
     if (views.empty() || views.back().label != label) views.push_back(view);
-    if (view.votes > views.back().votes) views.back() = view;
+    if (view.halves > views.back().halves) views.back() = view;
   }
-  for (const LabelView& view : recollection.second_look) votes[view.label] += view.votes;
-  for (const LabelVotes& one : recollection.histogram) votes[one.label] += one.votes;
+  std::map<int, int> halves;  // by label
+  for (const LabelView& view : recollection.first_look) halves[view.label] += view.halves;
+  for (const LabelView& view : views) halves[view.label] += view.halves;
   std::vector<LabelVotes> histogram;
-  for (const auto& [label, count] : votes) {
-    if (count > 0) histogram.push_back({label, count});
+  for (const auto& [label, count] : halves) {
+    if (count > 0) histogram.push_back({label, (count + 1) / 2});
   }
   SetHistogram(std::move(histogram), recollection);
 }
@@ -154,11 +143,10 @@ Recollection MergeDisplaced(std::span<const int> labels,
       ++of_label[static_cast<std::size_t>(vote->second)];
     }
     merged.first_look.push_back(Agreed(label, of_label, grid));
-    doubled.push_back({label, merged.first_look.back().votes});
+    doubled.push_back({label, merged.first_look.back().halves});
   }
   SetHistogram(std::move(doubled), merged);
   for (LabelVotes& one : merged.histogram) one.votes = (one.votes + 1) / 2;
-  for (LabelView& view : merged.first_look) view.votes = (view.votes + 1) / 2;
   return merged;
 }
 
@@ -183,7 +171,9 @@ Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageV
   }
   Recollection merged = MergeDisplaced(memory.entry_labels(), answers, grid);
   merged.words_read = words;
-  if (grids.look_closer) LookAgain(memory, live, grids, pool, search, merged);
+  if (grids.look_closer) {
+    LookAgain(memory, live, grids, encoder.parts(), pool, search, merged);
+  }
   return merged;
 }
 

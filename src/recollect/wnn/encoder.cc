@@ -49,9 +49,15 @@ struct Encoder::State {
   std::optional<Blur> blur;
   std::optional<InvariantEncoder> invariant;  // takes the place of all that, where wanted
   DisplacedPatterns displaced;
+  std::vector<int> parts;
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
       : options(o), synapses(o, width, height), image_height(height), pool(p) {
+    for (int n = 0; n < (options.parts_x > 0 ? synapses.neurons() : 0); ++n) {
+      const Pixel cell = synapses.Cell(n);
+      parts.push_back(cell.y * options.parts_y / options.neurons_y * options.parts_x +
+                      cell.x * options.parts_x / options.neurons_x);
+    }
     if (InvariantEncoder::Wanted(options)) {
       invariant.emplace(options, width, height, pool);
       return;
@@ -152,6 +158,8 @@ Displacements Encoder::displacements() const { return DisplacementsOf(state_->op
 Displacements Encoder::closer_displacements() const {
   return CloserDisplacementsOf(state_->options);
 }
+
+const std::vector<int>& Encoder::parts() const { return state_->parts; }
 
 std::size_t Encoder::pattern_words() const {
   return static_cast<std::size_t>(state_->synapses.neurons()) * kWords;

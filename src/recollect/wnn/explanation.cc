@@ -17,7 +17,7 @@ const LabelView* ViewOf(const std::vector<LabelView>& views, int label) {
 }
 
 // Half votes of a neuron that answered under one displacement for voters that agree on another.
-int HalvesOf(const Displacements& grid, int own, int agreed) {
+int HalvesUnder(const Displacements& grid, int own, int agreed) {
   if (own == agreed) return 2;
   const bool near = std::abs(own % grid.columns - agreed % grid.columns) <= 1 &&
                     std::abs(own / grid.columns - agreed / grid.columns) <= 1;
@@ -32,7 +32,8 @@ std::vector<int> FirstHalves(const Memory& memory, const Grids& grids,
   for (std::size_t n = 0; n < halves.size(); ++n) {
     const Answer answer = recollection.answers[n];
     if (answer == kNoAnswer || memory.label(AnswerEntry(answer)) != label) continue;
-    halves[n] = view ? HalvesOf(grids.first, recollection.seen_under[n], view->displacement) : 2;
+    halves[n] =
+        view ? HalvesUnder(grids.first, recollection.seen_under[n], view->displacements[0]) : 2;
   }
   return halves;
 }
@@ -46,9 +47,9 @@ Voters VotersFor(const Memory& memory, const Encoder& encoder, const DisplacedPa
   std::vector<int> halves = FirstHalves(memory, grids, recollection, label);
   const LabelView* view = ViewOf(recollection.second_look, label);
   if (live && view) {
-    const auto voted = VotersOf(memory, *live, recollection.near, {view->entry, view->around},
-                                grids.closer.columns, {view->votes, view->displacement});
-    for (std::size_t n = 0; n < halves.size(); ++n) halves[n] += voted[n] ? 2 : 0;
+    const auto more = HalvesOf(memory, *live, recollection.near, view->entry, encoder.parts(),
+                               view->displacements);
+    for (std::size_t n = 0; n < halves.size(); ++n) halves[n] += more[n];
   }
   for (const LabelVotes& one : recollection.histogram) {
     if (one.label == label) voters.votes = one.votes;

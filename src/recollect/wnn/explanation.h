@@ -15,7 +15,8 @@ struct Voters {
   int votes = 0;   // of the histogram
   // By cell of the neuron grid, row by row: half votes, 0 to 4. A neuron gives one vote in the
   // first look - half a one where it sees the image a displacement off the others' - and one in the
-  // second. Half their sum, rounded up, is `votes`.
+  // second, half of it with the whole image and half with its part. Half their sum, rounded up, is
+  // `votes`.
   std::vector<int> halves;
 };
 

@@ -32,6 +32,13 @@ struct ScanQuery {
   Answer* answers = nullptr;
 };
 
+// What one neuron sees of a live image under several displacements.
+struct NeuronViews {
+  const std::uint64_t* low = nullptr;   // bits of synapses 0..63, by displacement
+  const std::uint64_t* high = nullptr;  // bits of synapses 64..127
+  int count = 0;
+};
+
 // The taps of a blurring kernel, the same in both directions. Weights are 256ths and sum to 256, so
 // that nothing is rounded but the result.
 struct BlurTaps {
@@ -61,6 +68,20 @@ struct Kernel {
   // The same for `count` queries at a time, which share what is read from memory.
   void (*scan_batch)(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
                      int end);
+
+  // Of the closer look, for one neuron seen under `count` displacements (its words by displacement)
+  // and one entry's two words of it. near[d] = 1 where the distance is at most `limit`, else 0;
+  // returns whether any is.
+  bool (*find_near)(const NeuronViews& views, const std::uint64_t* entry, int limit,
+                    std::uint8_t* near);
+  // Adds the distances, and their squares.
+  void (*add_distances)(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
+                        std::uint64_t& squares);
+  // votes[i] += whether near[] is 1 anywhere at most one row and one column from i, for rows of
+  // `stride` with a border of zeros all around. scratch: as long as near. `from` and `to` are the
+  // first and past the last place within the border.
+  void (*spread_votes)(const std::uint8_t* near, int stride, int from, int to,
+                       std::uint8_t* scratch, std::uint16_t* votes);
 };
 
 // Each is null where the compiler's target lacks the instruction set.

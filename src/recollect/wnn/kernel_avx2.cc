@@ -165,7 +165,23 @@ AVX2 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int e
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"avx2", Cells, BlurColumns, BlurRow, Probe, Scan, ScanBatch};
+AVX2 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
+                   std::uint8_t* near) {
+  return FindNearFrom(0, views, entry, limit, near);
+}
+
+AVX2 void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
+                       std::uint64_t& squares) {
+  AddDistancesFrom(0, views, entry, sum, squares);
+}
+
+AVX2 void SpreadVotes(const std::uint8_t* near, int stride, int from, int to, std::uint8_t* scratch,
+                      std::uint16_t* votes) {
+  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+}
+
+constexpr Kernel kKernel = {"avx2", Cells,     BlurColumns, BlurRow,      Probe,
+                            Scan,   ScanBatch, FindNear,    AddDistances, SpreadVotes};
 
 }  // namespace
 

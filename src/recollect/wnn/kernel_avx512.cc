@@ -2,6 +2,7 @@
 #if defined(__x86_64__)
 // g++ 12 takes the undefined registers of its own intrinsics for a mistake of ours.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
 #include <immintrin.h>
 
 #include <bit>
@@ -201,7 +202,49 @@ AVX512 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"avx512", Cells, BlurColumns, BlurRow, Probe, Scan, ScanBatch};
+AVX512 inline __m512i DistancesUnder(const NeuronViews& views, int d, __m512i low, __m512i high) {
+  return _mm512_add_epi64(Different(Load(views.low + d), low),
+                          Different(Load(views.high + d), high));
+}
+
+AVX512 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
+                     std::uint8_t* near) {
+  const __m512i low = _mm512_set1_epi64(static_cast<long long>(entry[0]));
+  const __m512i high = _mm512_set1_epi64(static_cast<long long>(entry[1]));
+  const __m512i most = _mm512_set1_epi64(limit);
+  unsigned any = 0;
+  int d = 0;
+  for (; d + kLane <= views.count; d += kLane) {
+    const __mmask8 is_near = _mm512_cmple_epu64_mask(DistancesUnder(views, d, low, high), most);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(near + d), _mm_maskz_set1_epi8(is_near, 1));
+    any |= is_near;
+  }
+  return FindNearFrom(d, views, entry, limit, near) || any != 0;
+}
+
+AVX512 void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
+                         std::uint64_t& squares) {
+  const __m512i low = _mm512_set1_epi64(static_cast<long long>(entry[0]));
+  const __m512i high = _mm512_set1_epi64(static_cast<long long>(entry[1]));
+  __m512i sums = _mm512_setzero_si512(), all_squares = _mm512_setzero_si512();
+  int d = 0;
+  for (; d + kLane <= views.count; d += kLane) {
+    const __m512i distances = DistancesUnder(views, d, low, high);
+    sums = _mm512_add_epi64(sums, distances);
+    all_squares = _mm512_add_epi64(all_squares, _mm512_mul_epu32(distances, distances));
+  }
+  sum += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
+  squares += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(all_squares));
+  AddDistancesFrom(d, views, entry, sum, squares);
+}
+
+AVX512 void SpreadVotes(const std::uint8_t* near, int stride, int from, int to,
+                        std::uint8_t* scratch, std::uint16_t* votes) {
+  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+}
+
+constexpr Kernel kKernel = {"avx512", Cells,     BlurColumns, BlurRow,      Probe,
+                            Scan,     ScanBatch, FindNear,    AddDistances, SpreadVotes};
 
 }  // namespace
 

@@ -28,6 +28,46 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
   }
 }
 
+// The closer look's, likewise.
+[[gnu::always_inline]] inline int DistanceUnder(const NeuronViews& views, int d,
+                                                const std::uint64_t* entry) {
+  return std::popcount(views.low[d] ^ entry[0]) + std::popcount(views.high[d] ^ entry[1]);
+}
+
+[[gnu::always_inline]] inline bool FindNearFrom(int first, const NeuronViews& views,
+                                                const std::uint64_t* entry, int limit,
+                                                std::uint8_t* near) {
+  bool any = false;
+  for (int d = first; d < views.count; ++d) {
+    const bool is_near = DistanceUnder(views, d, entry) <= limit;
+    near[d] = is_near ? 1 : 0;
+    any |= is_near;
+  }
+  return any;
+}
+
+[[gnu::always_inline]] inline void AddDistancesFrom(int first, const NeuronViews& views,
+                                                    const std::uint64_t* entry, std::uint64_t& sum,
+                                                    std::uint64_t& squares) {
+  for (int d = first; d < views.count; ++d) {
+    const auto distance = static_cast<std::uint64_t>(DistanceUnder(views, d, entry));
+    sum += distance;
+    squares += distance * distance;
+  }
+}
+
+[[gnu::always_inline]] inline void SpreadOverNeighbours(const std::uint8_t* near, int stride,
+                                                        int from, int to, std::uint8_t* scratch,
+                                                        std::uint16_t* votes) {
+  for (int i = from - stride; i < to + stride; ++i) {
+    scratch[i] = static_cast<std::uint8_t>(near[i - 1] | near[i] | near[i + 1]);
+  }
+  for (int i = from; i < to; ++i) {
+    votes[i] = static_cast<std::uint16_t>(votes[i] +
+                                          (scratch[i - stride] | scratch[i] | scratch[i + stride]));
+  }
+}
+
 // Kernel::cells in plain C++.
 void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                 std::uint64_t* pattern);

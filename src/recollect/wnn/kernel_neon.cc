@@ -73,7 +73,22 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns, PlainBlurRow, Probe, Scan, ScanBatch};
+bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit, std::uint8_t* near) {
+  return FindNearFrom(0, views, entry, limit, near);
+}
+
+void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
+                  std::uint64_t& squares) {
+  AddDistancesFrom(0, views, entry, sum, squares);
+}
+
+void SpreadVotes(const std::uint8_t* near, int stride, int from, int to, std::uint8_t* scratch,
+                 std::uint16_t* votes) {
+  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+}
+
+constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns, PlainBlurRow, Probe,
+                            Scan,   ScanBatch,  FindNear,    AddDistances, SpreadVotes};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <string>
+#include <tuple>
 
 #include "recollect/wnn/test_patterns.h"
 
@@ -155,6 +156,50 @@ TEST(Kernel, SkipsHalfOfThePatternsOnlyWhereTheOtherHalfRulesThemOut) {
     EXPECT_EQ(AnswerEntry(answer[0]), 3) << kernel->name;
     EXPECT_EQ(AnswerDistance(answer[0]), 0);
     EXPECT_LE(read, kernel == &kPlainKernel ? 128 : 64 + 8);
+  }
+}
+
+TEST(Kernel, CloserLooksAgreeWithThePlainOnes) {
+  for (const Content content : {Content::kRandom, Content::kFewBits, Content::kNearQuery}) {
+    for (int count = 1; count <= 70; ++count) {
+      const auto seed = static_cast<std::uint64_t>(count);
+      const Words words = Fill(2 * static_cast<std::size_t>(count), content, seed);
+      const Words entry = Fill(kWords, content, ~seed);
+      const NeuronViews views{words.data(), words.data() + count, count};
+      const auto look = [&](const Kernel& kernel, int limit) {
+        std::vector<std::uint8_t> near(static_cast<std::size_t>(count) + 1, 7);
+        const bool any = kernel.find_near(views, entry.data(), limit, near.data());
+        std::uint64_t sum = 5, squares = 6;
+        kernel.add_distances(views, entry.data(), sum, squares);
+        return std::tuple(near, any, sum, squares);
+      };
+      for (const Kernel* kernel : Kernels()) {
+        for (const int limit : {0, 1, 2, 60, 64, 128}) {
+          ASSERT_EQ(look(*kernel, limit), look(kPlainKernel, limit)) << kernel->name;
+        }
+      }
+      EXPECT_EQ(std::get<0>(look(kPlainKernel, 128)).back(), 7);
+      EXPECT_FALSE(std::get<1>(look(kPlainKernel, -1)));
+    }
+  }
+}
+
+TEST(Kernel, VotesSpreadToNeighboursAndNoFurther) {
+  constexpr int kColumns = 5, kRows = 4, kStride = kColumns + 2, kSize = kStride * (kRows + 2);
+  const auto at = [](int x, int y) { return static_cast<std::size_t>((y + 1) * kStride + x + 1); };
+  std::vector<std::uint8_t> near(kSize, 0);
+  near[at(0, 1)] = near[at(4, 3)] = near[at(3, 3)] = 1;
+  for (const Kernel* kernel : Kernels()) {
+    std::vector<std::uint8_t> scratch(kSize, 0);
+    std::vector<std::uint16_t> votes(kSize, 10);
+    kernel->spread_votes(near.data(), kStride, kStride + 1, kSize - kStride - 1, scratch.data(),
+                         votes.data());
+    for (int y = 0; y < kRows; ++y) {
+      for (int x = 0; x < kColumns; ++x) {
+        const bool beside = (x <= 1 && y <= 2) || (x >= 2 && y >= 2);
+        EXPECT_EQ(votes[at(x, y)], beside ? 11 : 10) << kernel->name << " " << x << " " << y;
+      }
+    }
   }
 }
 

@@ -29,6 +29,9 @@ void Check(const NetworkOptions& options, int width, int height) {
           where,
           "working_width and contrast_sigma must not be negative, gradient_arm positive, "
           "blur_scales 1 to 4");
+  Require(options.parts_x >= 0 && options.parts_y >= 0 && options.parts_x <= 64 &&
+              options.parts_y <= 64 && !options.parts_x == !options.parts_y,
+          where, "parts_x and parts_y must be both 0, or both 1 to 64");
   DisplacementsOf(options);
   CloserDisplacementsOf(options);
   Require(width >= 8 && height >= 8 && width <= 1 << 14 && height <= 1 << 14, where,
@@ -61,6 +64,8 @@ NetworkOptions RecollectNetwork() {
   options.shift_x = 64;
   options.shift_y = 32;
   options.closer_step = 4;
+  options.parts_x = 8;
+  options.parts_y = 3;
   return options;
 }
 

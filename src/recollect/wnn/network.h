@@ -48,6 +48,9 @@ struct NetworkOptions {
   // The best places are looked at again, under displacements of the same reach but one every so
   // many pixels, a divisor of shift_step (closer_look.h); 0: they are not.
   int closer_step = 0;
+  // There the image is also cut into so many columns and rows of parts, each of which may be
+  // displaced in its own way; 0: it is not.
+  int parts_x = 0, parts_y = 0;
 
   int neurons() const { return neurons_x * neurons_y; }
 };

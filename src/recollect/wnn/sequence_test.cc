@@ -210,7 +210,7 @@ TEST(Calibration, ImagesThatGoWrongTogetherTellLessInASequence) {
     for (int lap = 0; lap < 6; ++lap) {
       for (int i = 0; i < kPlaces; ++i) {
         const bool wrong = together ? i / 8 % 3 == 2 : random.Uniform() < 1.0 / 3;
-        Trial trial{Votes(wrong ? (i + 20) % kPlaces : i, random), kNeurons, {}, {}, i};
+        Trial trial{Votes(wrong ? (i + 20) % kPlaces : i, random), kNeurons, {}, {i}, i};
         for (int p = 0; p < kPlaces; ++p) {
           if (route.WithinOne(i, p)) trial.right.push_back(p);
         }
