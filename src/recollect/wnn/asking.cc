@@ -49,6 +49,14 @@ std::vector<ScanBlock> BlocksOf(const Memory& memory, const SearchOptions& optio
   return blocks;
 }
 
+ScanEntry EntryIn(const Memory& memory, int entry, int first_entry) {
+  const std::size_t b = memory.BlockOf(entry);
+  const BlockView& view = memory.blocks()[b];
+  const std::uint64_t* low = view.words + (entry - memory.first_entry(b));
+  return {low, low + std::ptrdiff_t{memory.neurons()} * view.capacity, view.capacity,
+          first_entry + entry};
+}
+
 Asking::Asking(const Memory& memory, std::span<const std::uint64_t> pattern, ThreadPool& pool,
                const SearchOptions& options, int first_entry)
     : memory_(memory),
@@ -96,13 +104,7 @@ void Asking::Peek(int begin, int end) {
 
 void Asking::SetHints(std::span<const int> entries) {
   hints_.clear();
-  for (const int entry : entries) {
-    const std::size_t b = memory_.BlockOf(entry);
-    const BlockView& view = memory_.blocks()[b];
-    const std::uint64_t* low = view.words + (entry - memory_.first_entry(b));
-    hints_.push_back({low, low + std::ptrdiff_t{memory_.neurons()} * view.capacity, view.capacity,
-                      first_entry_ + entry});
-  }
+  for (const int entry : entries) hints_.push_back(EntryIn(memory_, entry, first_entry_));
 }
 
 std::int64_t Asking::TryHints(int begin, int end) {

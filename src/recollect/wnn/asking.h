@@ -14,6 +14,9 @@ namespace recollect::wnn {
 std::vector<ScanBlock> BlocksOf(const Memory& memory, const SearchOptions& options,
                                 int first_entry = 0);
 
+// Where one entry's words lie; it is called by its number in the memory plus first_entry.
+ScanEntry EntryIn(const Memory& memory, int entry, int first_entry = 0);
+
 // The kernel that a search uses.
 const Kernel& KernelOf(const SearchOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 
 #include "recollect/core/parallel.h"
@@ -23,57 +24,61 @@ std::vector<std::vector<std::uint64_t>> PatternsOf(const Memory& memory,
   return patterns;
 }
 
-// One number a displacement, with a border of one all around, so that neighbours are found without
-// asking where the grid ends.
-struct Bordered {
-  explicit Bordered(const Displacements& grid)
-      : columns(grid.columns),
-        rows(grid.rows),
-        stride(grid.columns + 2),
-        from(stride + 1),
-        to(stride * (grid.rows + 1) - 1),
-        size(static_cast<std::size_t>(stride * (grid.rows + 2))) {}
-  int At(int displacement) const {
-    return from + displacement / columns * stride + displacement % columns;
+// One neuron's words of all patterns, side by side.
+void Gather(const std::vector<std::vector<std::uint64_t>>& patterns, std::size_t neuron,
+            std::vector<std::uint64_t>& words) {
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    std::copy_n(&patterns[i][kWords * neuron], kWords, &words[kWords * i]);
   }
-  int Displacement(int at) const { return (at - from) / stride * columns + (at - from) % stride; }
-  // The displacement of the greatest number, of equals the first.
-  int Greatest(const std::uint16_t* numbers) const {
-    int best = from;
-    for (int row = 0; row < rows; ++row) {
-      const std::uint16_t* first = numbers + from + row * stride;
-      const auto greatest = static_cast<int>(std::max_element(first, first + columns) - numbers);
-      if (numbers[greatest] > numbers[best]) best = greatest;
-    }
-    return Displacement(best);
-  }
+}
 
-  int columns, rows, stride, from, to;
-  std::size_t size;
-};
+constexpr std::size_t kStride = 64;  // votes of a row of displacements, which has fewer
 
-// Where one neuron is near an entry, and what it gives for that.
+// The displacement of most votes, of equals the first.
+int MostVoted(const std::int16_t* votes, const Displacements& grid) {
+  const auto size = kStride * static_cast<std::size_t>(grid.rows);
+  std::int16_t most = 0;
+  for (std::size_t i = 0; i < size; ++i) most = std::max(most, votes[i]);
+  const auto at = static_cast<int>(std::find(votes, votes + size, most) - votes);
+  return at / int{kStride} * grid.columns + at % int{kStride};
+}
+
+std::int16_t VotesUnder(const std::int16_t* votes, const Displacements& grid, int displacement) {
+  return votes[displacement / grid.columns * int{kStride} + displacement % grid.columns];
+}
+
+// Where one neuron is near an entry, and what it gives for that: a vote wherever it is near under a
+// displacement at most one step away.
 class Voter {
  public:
   explicit Voter(const Displacements& grid)
       : grid_(grid),
-        flat_(static_cast<std::size_t>(grid.count())),
-        near_(grid_.size),
-        scratch_(grid_.size) {}
+        near_(static_cast<std::size_t>(grid.count() / 64 + 2)),  // rows are read by whole words
+        wide_(static_cast<std::size_t>(grid.rows) + 2),
+        rows_(static_cast<std::size_t>(grid.rows)) {}
 
-  void Vote(const NeuronViews& views, const std::uint64_t* entry, int limit, std::uint16_t* votes) {
-    if (!kernel_.find_near(views, entry, limit, flat_.data())) return;
-    for (int row = 0; row < grid_.rows; ++row) {
-      std::copy_n(flat_.begin() + row * grid_.columns, grid_.columns,
-                  near_.begin() + grid_.from + row * grid_.stride);
+  void Vote(const NeuronViews& views, const std::uint64_t* entry, int limit, std::int16_t* votes) {
+    if (!kernel_.find_near(views, entry, limit, near_.data())) return;
+    const std::uint64_t row_mask = (std::uint64_t{1} << grid_.columns) - 1;
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      const std::size_t bit = row * static_cast<std::size_t>(grid_.columns);
+      std::uint64_t own;
+      std::memcpy(&own, reinterpret_cast<const char*>(near_.data()) + bit / 8, sizeof own);
+      own = own >> (bit % 8) & row_mask;
+      wide_[row + 1] = (own | own << 1 | own >> 1) & row_mask;
     }
-    kernel_.spread_votes(near_.data(), grid_.stride, grid_.from, grid_.to, scratch_.data(), votes);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      rows_[row] = wide_[row] | wide_[row + 1] | wide_[row + 2];
+    }
+    kernel_.add_votes(rows_.data(), grid_.rows, votes);
   }
 
  private:
   const Kernel& kernel_ = *Kernels().front();
-  Bordered grid_;
-  std::vector<std::uint8_t> flat_, near_, scratch_;
+  Displacements grid_;
+  std::vector<std::uint64_t> near_;  // a bit a displacement, all rows in one
+  std::vector<std::uint64_t> wide_;  // by row, with one before and one after: near it sideways
+  std::vector<std::uint64_t> rows_;
 };
 
 // Neurons by part; by their number, some at a time, where there are no parts.
@@ -90,27 +95,18 @@ std::vector<std::vector<std::size_t>> Sorted(std::span<const int> parts, std::si
 }  // namespace
 
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
-                               std::span<const int> displacements, std::span<const int> usual,
-                               ThreadPool& pool) {
+                               std::span<const int> usual, ThreadPool& pool) {
   const auto entries = PatternsOf(memory, usual);
   std::vector<int> near(static_cast<std::size_t>(memory.neurons()), -1);
   if (entries.empty()) return near;
-  const Kernel& kernel = *Kernels().front();
-  const std::size_t seen = displacements.size();
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint64_t> low(seen), high(seen);
+    std::vector<std::uint64_t> own(kWords * entries.size());
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      const auto all_low = live.Of(n, 0), all_high = live.Of(n, 1);
-      for (std::size_t d = 0; d < seen; ++d) {
-        low[d] = all_low[static_cast<std::size_t>(displacements[d])];
-        high[d] = all_high[static_cast<std::size_t>(displacements[d])];
-      }
-      const NeuronViews views{low.data(), high.data(), static_cast<int>(seen)};
+      Gather(entries, n, own);
       std::uint64_t sum = 0, squares = 0;
-      for (const auto& entry : entries) {
-        kernel.add_distances(views, &entry[kWords * n], sum, squares);
-      }
-      const auto count = static_cast<double>(seen * entries.size());
+      Kernels().front()->add_distances(ViewsOf(live, n), own.data(),
+                                       static_cast<int>(entries.size()), sum, squares);
+      const double count = static_cast<double>(entries.size()) * live.grid.count();
       const double mean = static_cast<double>(sum) / count;
       const double variance = static_cast<double>(squares) / count - mean * mean;
       // A neuron to which all entries look alike is of no use below one bit of spread.
@@ -126,41 +122,42 @@ std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live
                              std::span<const int> parts, ThreadPool& pool) {
   const auto stored = PatternsOf(memory, entries);
   const auto neurons = Sorted(parts, near.size());
-  const Bordered grid(live.grid);
+  const Displacements& grid = live.grid;
+  const auto size = kStride * static_cast<std::size_t>(grid.rows);  // votes of an entry
   std::vector<Look> looks(entries.size());
   for (Look& look : looks) look.displacements.resize(parts.empty() ? 1 : 1 + neurons.size());
-  std::vector<std::uint16_t> whole(entries.size() * grid.size, 0);
+  std::vector<std::int16_t> whole(entries.size() * size, 0);
   std::mutex adding;
   pool.For(static_cast<std::int64_t>(neurons.size()), 1, [&](std::int64_t begin, std::int64_t end) {
     Voter voter(live.grid);
-    std::vector<std::uint16_t> votes(whole.size());
+    std::vector<std::int16_t> votes(whole.size());
+    std::vector<std::uint64_t> own(kWords * entries.size());
     for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end);
          ++part) {
-      std::fill(votes.begin(), votes.end(), std::uint16_t{0});
+      std::fill(votes.begin(), votes.end(), std::int16_t{0});
       for (const std::size_t n : neurons[part]) {
         if (near[n] < 0) continue;
         const NeuronViews views = ViewsOf(live, n);
+        Gather(stored, n, own);
         for (std::size_t e = 0; e < stored.size(); ++e) {
-          voter.Vote(views, &stored[e][kWords * n], near[n], &votes[e * grid.size]);
+          voter.Vote(views, &own[kWords * e], near[n], &votes[e * size]);
         }
       }
       const std::lock_guard lock(adding);
       for (std::size_t i = 0; i < whole.size(); ++i) {
-        whole[i] = static_cast<std::uint16_t>(whole[i] + votes[i]);
+        whole[i] = static_cast<std::int16_t>(whole[i] + votes[i]);
       }
       for (std::size_t e = 0; e < stored.size() && !parts.empty(); ++e) {
-        const std::uint16_t* own = &votes[e * grid.size];
-        const int best = grid.Greatest(own);
+        const int best = MostVoted(&votes[e * size], grid);
         looks[e].displacements[1 + part] = best;
-        looks[e].halves += own[grid.At(best)];
+        looks[e].halves += VotesUnder(&votes[e * size], grid, best);
       }
     }
   });
   for (std::size_t e = 0; e < stored.size(); ++e) {
-    const std::uint16_t* all = &whole[e * grid.size];
-    const int best = grid.Greatest(all);
+    const int best = MostVoted(&whole[e * size], grid);
     looks[e].displacements[0] = best;
-    looks[e].halves += (parts.empty() ? 2 : 1) * all[grid.At(best)];
+    looks[e].halves += (parts.empty() ? 2 : 1) * VotesUnder(&whole[e * size], grid, best);
   }
   return looks;
 }
@@ -169,14 +166,13 @@ std::vector<int> HalvesOf(const Memory& memory, const DisplacedPatterns& live,
                           std::span<const int> near, int entry, std::span<const int> parts,
                           std::span<const int> displacements) {
   const std::vector<std::uint64_t> stored = memory.Pattern(entry);
-  const Bordered grid(live.grid);
   Voter voter(live.grid);
   std::vector<int> halves;
   for (std::size_t n = 0; n < near.size(); ++n) {
-    std::vector<std::uint16_t> votes(grid.size, 0);
+    std::vector<std::int16_t> votes(kStride * static_cast<std::size_t>(live.grid.rows), 0);
     if (near[n] >= 0) voter.Vote(ViewsOf(live, n), &stored[kWords * n], near[n], votes.data());
     const auto under = [&](std::size_t which) {
-      return static_cast<int>(votes[static_cast<std::size_t>(grid.At(displacements[which]))]);
+      return int{VotesUnder(votes.data(), live.grid, displacements[which])};
     };
     halves.push_back(parts.empty() ? 2 * under(0)
                                    : under(0) + under(1 + static_cast<std::size_t>(parts[n])));

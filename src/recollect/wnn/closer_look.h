@@ -23,10 +23,9 @@ namespace recollect::wnn {
 inline constexpr double kNearDeviations = 3;
 
 // By neuron, the largest distance at which it votes, -1: none. `usual`: entries to learn that
-// from, seen under all of `displacements`.
+// from, seen under all displacements of `live`.
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
-                               std::span<const int> displacements, std::span<const int> usual,
-                               ThreadPool& pool);
+                               std::span<const int> usual, ThreadPool& pool);
 
 struct Look {
   int halves =

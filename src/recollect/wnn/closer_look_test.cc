@@ -32,10 +32,9 @@ struct Scenes {
   std::vector<Look> LookAt(const cv::Mat& live) {
     const Displacements grid = encoder.closer_displacements();
     const DisplacedPatterns& patterns = encoder.EncodeDisplaced(View(live), grid);
-    std::vector<int> all(static_cast<std::size_t>(memory.entries())), displacements;
+    std::vector<int> all(static_cast<std::size_t>(memory.entries()));
     std::iota(all.begin(), all.end(), 0);
-    for (int d = 0; d < grid.count(); d += 4) displacements.push_back(d);
-    const auto near = NearDistances(memory, patterns, displacements, all, pool);
+    const auto near = NearDistances(memory, patterns.Every(4), all, pool);
     return LookCloser(memory, patterns, near, all, encoder.parts(), pool);
   }
   ThreadPool pool;

@@ -1,17 +1,21 @@
 #include "recollect/wnn/displaced.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/wnn/asking.h"
 #include "recollect/wnn/closer_look.h"
+#include "recollect/wnn/kernel.h"
 
 namespace recollect::wnn {
 namespace {
 
-constexpr int kBatch = 11;          // images that share what a search reads from memory
+constexpr int kGrain = 16;          // neurons that a thread takes at a time
 constexpr std::size_t kLooks = 12;  // labels that are looked at again,
 constexpr int kAround = 2;          // and so many before and after each
 constexpr int kUsual = 64;          // entries that tell how far entries usually lie
@@ -77,14 +81,11 @@ std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
 }
 
 // Adds the votes of a closer look.
-void LookAgain(const Memory& memory, const DisplacedPatterns& live, const Grids& grids,
+void LookAgain(const Memory& memory, const DisplacedPatterns& live, const DisplacedPatterns& first,
                std::span<const int> parts, ThreadPool& pool, const SearchOptions& search,
                Recollection& recollection) {
   const auto entries = Promising(memory, search.allowed, recollection.histogram);
-  std::vector<int> displacements;
-  for (int d = 0; d < grids.first.count(); ++d) displacements.push_back(grids.Closer(d));
-  recollection.near =
-      NearDistances(memory, live, displacements, Spread(memory, search.allowed, kUsual), pool);
+  recollection.near = NearDistances(memory, first, Spread(memory, search.allowed, kUsual), pool);
   const std::vector<Look> looks = LookCloser(memory, live, recollection.near, entries, parts, pool);
   auto& views = recollection.second_look;
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -111,21 +112,50 @@ Grids::Grids(const Encoder& encoder)
   if (!look_closer) closer = first;
 }
 
-Recollection MergeDisplaced(std::span<const int> labels,
-                            std::span<const std::vector<Answer>> answers,
-                            const Displacements& grid) {
-  Require(static_cast<int>(answers.size()) == grid.count(), "displacements",
-          "as many sets of answers are needed as there are displacements");
-  Recollection merged;
-  merged.answers = answers.front();
-  merged.seen_under.assign(merged.answers.size(), 0);
-  for (std::size_t d = 1; d < answers.size(); ++d) {
-    for (std::size_t n = 0; n < merged.answers.size(); ++n) {
-      if (answers[d][n] >= merged.answers[n]) continue;
-      merged.answers[n] = answers[d][n];
-      merged.seen_under[n] = static_cast<int>(d);
-    }
+DisplacedAnswers AskDisplaced(const Memory& memory, const DisplacedPatterns& live, ThreadPool& pool,
+                              const SearchOptions& search) {
+  const auto neurons = static_cast<std::size_t>(memory.neurons());
+  DisplacedAnswers asked{std::vector<Answer>(neurons, kNoAnswer), std::vector<int>(neurons, 0)};
+  std::vector<std::vector<std::uint64_t>> patterns;
+  for (int d = 0; d < live.grid.count(); ++d) patterns.push_back(live.Under(d));
+  CheckPattern(memory, patterns.front());
+  // All of them improve the same answers.
+  const TieBreak ties(search.tie_seed, patterns[patterns.size() / 2]);
+  std::vector<ScanQuery> queries;
+  for (const auto& pattern : patterns) {
+    queries.push_back({pattern.data(), ties, asked.answers.data()});
   }
+  const Kernel& kernel = KernelOf(search);
+  const std::vector<ScanBlock> blocks = BlocksOf(memory, search);
+  pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (const ScanBlock& block : blocks) {
+      kernel.scan_batch(block, queries.data(), live.grid.count(), static_cast<int>(begin),
+                        static_cast<int>(end));
+    }
+    std::vector<std::uint64_t> near(static_cast<std::size_t>(live.grid.count() / 64 + 1));
+    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      const Answer answer = asked.answers[n];
+      if (answer == kNoAnswer) continue;
+      const ScanEntry entry = EntryIn(memory, AnswerEntry(answer));
+      const std::size_t at = n * static_cast<std::size_t>(entry.stride);
+      const std::uint64_t words[kWords] = {entry.low[at], entry.high[at]};
+      kernel.find_near({live.Of(n, 0).data(), live.Of(n, 1).data(), live.grid.count()}, words,
+                       AnswerDistance(answer), near.data());
+      std::size_t word = 0;
+      while (near[word] == 0) ++word;
+      asked.seen_under[n] = static_cast<int>(64 * word) + std::countr_zero(near[word]);
+    }
+  });
+  return asked;
+}
+
+Recollection MergeDisplaced(std::span<const int> labels, DisplacedAnswers asked,
+                            const Displacements& grid) {
+  Require(asked.answers.size() == asked.seen_under.size(), "displacements",
+          "one is needed for each answer");
+  Recollection merged;
+  merged.answers = std::move(asked.answers);
+  merged.seen_under = std::move(asked.seen_under);
   std::vector<std::pair<int, int>> votes;  // label, displacement
   for (std::size_t n = 0; n < merged.answers.size(); ++n) {
     if (merged.answers[n] == kNoAnswer) continue;
@@ -135,7 +165,7 @@ Recollection MergeDisplaced(std::span<const int> labels,
   merged.neurons_read = static_cast<int>(votes.size());
   std::sort(votes.begin(), votes.end());
   std::vector<LabelVotes> doubled;
-  std::vector<int> of_label(answers.size());
+  std::vector<int> of_label(static_cast<std::size_t>(grid.count()));
   for (auto vote = votes.begin(); vote != votes.end();) {
     const int label = vote->first;
     std::fill(of_label.begin(), of_label.end(), 0);
@@ -156,23 +186,13 @@ Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageV
   const Displacements& grid = grids.first;
   if (grid.count() == 1) return Recollect(memory, encoder.Encode(image), pool, search);
   const DisplacedPatterns& live = encoder.EncodeDisplaced(image, grids.closer);
-  std::vector<std::vector<Answer>> answers;
-  std::int64_t words = 0;
-  for (int begin = 0; begin < grid.count(); begin += kBatch) {
-    std::vector<std::vector<std::uint64_t>> patterns;
-    for (int d = begin; d < std::min(begin + kBatch, grid.count()); ++d) {
-      patterns.push_back(live.Under(grids.Closer(d)));
-    }
-    const std::vector<std::span<const std::uint64_t>> batch(patterns.begin(), patterns.end());
-    for (Recollection& one : RecollectBatch(memory, batch, pool, search)) {
-      words += one.words_read;
-      answers.push_back(std::move(one.answers));
-    }
-  }
-  Recollection merged = MergeDisplaced(memory.entry_labels(), answers, grid);
-  merged.words_read = words;
+  const DisplacedPatterns first = live.Every(grids.finer());
+  Recollection merged =
+      MergeDisplaced(memory.entry_labels(), AskDisplaced(memory, first, pool, search), grid);
+  const int looked_at = search.allowed ? search.allowed->size() : memory.entries();
+  merged.words_read = std::int64_t{looked_at} * memory.neurons() * kWords;
   if (grids.look_closer) {
-    LookAgain(memory, live, grids, encoder.parts(), pool, search, merged);
+    LookAgain(memory, live, first, encoder.parts(), pool, search, merged);
   }
   return merged;
 }

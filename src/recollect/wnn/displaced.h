@@ -21,21 +21,27 @@ struct Grids {
   bool look_closer;
 };
 
-// What the committee recollects of a live image. Where the network has displacements, the image is
-// searched for under each of them, all against the one memory, and MergeDisplaced joins the
-// answers; search.stop is then not heeded. Where it also looks closer, the votes of
+// What the committee recollects of a live image. Where the network has displacements, each neuron
+// keeps the nearest entry under any of them (AskDisplaced) and MergeDisplaced counts the votes;
+// search.stop is then not heeded. Where it also looks closer, the votes of
 // the second look (LookCloser) are added, of the labels with most votes and those numbered two
 // before to two after them. Otherwise this is Recollect of the image's pattern.
 // Throws Error where the image is not of the encoder's size.
 Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageView& image,
                             ThreadPool& pool, const SearchOptions& search = {});
 
-// answers[d][n]: neuron n's under displacement d, row by row of `grid`. Each neuron keeps its best
-// answer over all displacements. An entry's label then gets the votes of those neurons only that
-// agree on how the image is displaced, give or take one step, the ones a step off counted half:
-// a place is one view of a rigid scene, chance likeness is not.
-Recollection MergeDisplaced(std::span<const int> labels,
-                            std::span<const std::vector<Answer>> answers,
+struct DisplacedAnswers {
+  std::vector<Answer> answers;  // by neuron: the nearest entry under any displacement
+  std::vector<int> seen_under;  // and the first displacement under which it is so near
+};
+// Goes through the memory once for all displacements.
+DisplacedAnswers AskDisplaced(const Memory& memory, const DisplacedPatterns& live, ThreadPool& pool,
+                              const SearchOptions& search = {});
+
+// An entry's label gets the votes of those neurons only that agree on how the image is displaced,
+// give or take one step of the grid, the ones a step off counted half: a place is one view of a
+// rigid scene, chance likeness is not.
+Recollection MergeDisplaced(std::span<const int> labels, DisplacedAnswers asked,
                             const Displacements& grid);
 
 }  // namespace recollect::wnn

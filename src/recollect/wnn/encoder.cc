@@ -200,6 +200,20 @@ std::vector<std::uint64_t> DisplacedPatterns::Under(int displacement) const {
   return pattern;
 }
 
+DisplacedPatterns DisplacedPatterns::Every(int steps) const {
+  DisplacedPatterns some;
+  some.grid = {(grid.columns - 1) / steps + 1, (grid.rows - 1) / steps + 1, grid.step * steps};
+  const auto count = static_cast<std::size_t>(grid.count());
+  for (std::size_t row = 0; row < words.size(); row += count) {
+    for (int y = 0; y < grid.rows; y += steps) {
+      for (int x = 0; x < grid.columns; x += steps) {
+        some.words.push_back(words[row + static_cast<std::size_t>(y * grid.columns + x)]);
+      }
+    }
+  }
+  return some;
+}
+
 const DisplacedPatterns& Encoder::EncodeDisplaced(const ImageView& image,
                                                   const Displacements& grid) {
   State& state = *state_;

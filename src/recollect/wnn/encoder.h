@@ -32,6 +32,8 @@ struct DisplacedPatterns {
     const auto count = static_cast<std::size_t>(grid.count());
     return std::span(words).subspan((neuron * kWords + word) * count, count);
   }
+  // Those under every so many-th displacement either way, from the first of a row and column on.
+  DisplacedPatterns Every(int steps) const;
   // The pattern under one displacement, neurons x kWords words.
   std::vector<std::uint64_t> Under(int displacement) const;
 };

@@ -118,11 +118,10 @@ TEST(Invariant, RowsOfDisplacementsAreTheSameAsEachAlone) {
       options.neurons_x = 6;
       options.neurons_y = 4;
       options.cells = cells;
-      options.shift_x = cells == Cells::kGradient ? 128 : 16;  // 65 displacements: a tail
-      options.shift_y = 16;
       const cv::Mat scene = Scene(2, width, 200);
       Encoder encoder(options, width, 200, pool);
-      const Displacements grid = encoder.closer_displacements();
+      // 65 displacements a row are more than one read of packed bits takes in.
+      const Displacements grid{cells == Cells::kGradient ? 65 : 9, 9, 4};
       const DisplacedPatterns patterns = encoder.EncodeDisplaced(View(scene), grid);
       for (int d = 0; d < grid.count(); ++d) {
         const auto pixels = [&](int steps) {
@@ -136,19 +135,53 @@ TEST(Invariant, RowsOfDisplacementsAreTheSameAsEachAlone) {
   }
 }
 
+TEST(Invariant, NeuronsKeepTheirNearestEntryUnderAnyDisplacement) {
+  ThreadPool pool(3);
+  NetworkOptions options = RecollectNetwork();
+  options.neurons_x = 8;
+  options.neurons_y = 6;
+  Encoder encoder(options, 320, 240, pool);
+  Memory memory(options.neurons());
+  for (std::uint64_t place = 0; place < 70; ++place) {  // a full block and a tail
+    memory.Append(encoder.Encode(View(Scene(place))));
+  }
+  EntrySet some(memory);
+  some.AllowRange(3, 40).AllowRange(50, 69);
+  const DisplacedPatterns live = encoder.EncodeDisplaced(View(Scene(99)), encoder.displacements());
+  for (const EntrySet* allowed : std::initializer_list<const EntrySet*>{nullptr, &some}) {
+    const DisplacedAnswers asked = AskDisplaced(memory, live, pool, {.allowed = allowed});
+    for (std::size_t n = 0; n < 48; ++n) {
+      int least = 1000, of_answer = 1000, first = -1;
+      for (int entry = 0; entry < 70; ++entry) {
+        if (allowed && !allowed->Allows(entry)) continue;
+        const auto stored = memory.Pattern(entry);
+        for (int d = 0; d < 45; ++d) {
+          const auto at = static_cast<std::size_t>(d);
+          const int distance = std::popcount(live.Of(n, 0)[at] ^ stored[2 * n]) +
+                               std::popcount(live.Of(n, 1)[at] ^ stored[2 * n + 1]);
+          least = std::min(least, distance);
+          if (entry != AnswerEntry(asked.answers[n]) || distance >= of_answer) continue;
+          of_answer = distance;
+          first = d;
+        }
+      }
+      EXPECT_EQ(AnswerDistance(asked.answers[n]), least) << n;
+      EXPECT_EQ(of_answer, least) << n;
+      EXPECT_EQ(asked.seen_under[n], first) << n;
+    }
+  }
+}
+
 TEST(Invariant, VotesUnderFarDisplacementsDoNotAddUp) {
   const Displacements grid{3, 1, 16};
   const std::vector<int> labels = {0, 1};
   // Entry 0 gets five votes, all under the left displacement; entry 1 six, three at either end.
-  std::vector<std::vector<Answer>> answers(3, std::vector<Answer>(11, MakeAnswer(60, 0, 0)));
-  for (std::size_t n = 0; n < 11; ++n) {
-    if (n < 5) {
-      answers[0][n] = MakeAnswer(5, 0, 0);
-    } else {
-      answers[n < 8 ? 0 : 2][n] = MakeAnswer(5, 0, 1);
-    }
+  DisplacedAnswers asked;
+  for (int n = 0; n < 11; ++n) {
+    asked.answers.push_back(MakeAnswer(5, 0, n < 5 ? 0 : 1));
+    asked.seen_under.push_back(n < 8 ? 0 : 2);
   }
-  const Recollection merged = MergeDisplaced(labels, answers, grid);
+  const Recollection merged = MergeDisplaced(labels, asked, grid);
   EXPECT_EQ(merged.winner, 0);
   EXPECT_EQ(merged.histogram[0].votes, 5);
   EXPECT_EQ(merged.histogram[1].votes, 3);

@@ -69,19 +69,16 @@ struct Kernel {
   void (*scan_batch)(const ScanBlock& block, const ScanQuery* queries, int count, int begin,
                      int end);
 
-  // Of the closer look, for one neuron seen under `count` displacements (its words by displacement)
-  // and one entry's two words of it. near[d] = 1 where the distance is at most `limit`, else 0;
-  // returns whether any is.
+  // Of the closer look, for one neuron seen under `count` displacements and one entry's two words
+  // of it: bit d of `near` is set where the distance is at most `limit`, of as many whole words as
+  // hold all bits. Returns whether any is.
   bool (*find_near)(const NeuronViews& views, const std::uint64_t* entry, int limit,
-                    std::uint8_t* near);
-  // Adds the distances, and their squares.
-  void (*add_distances)(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
-                        std::uint64_t& squares);
-  // votes[i] += whether near[] is 1 anywhere at most one row and one column from i, for rows of
-  // `stride` with a border of zeros all around. scratch: as long as near. `from` and `to` are the
-  // first and past the last place within the border.
-  void (*spread_votes)(const std::uint8_t* near, int stride, int from, int to,
-                       std::uint8_t* scratch, std::uint16_t* votes);
+                    std::uint64_t* near);
+  // Adds the distances to `count` entries, two words each, and their squares.
+  void (*add_distances)(const NeuronViews& views, const std::uint64_t* entries, int count,
+                        std::uint64_t& sum, std::uint64_t& squares);
+  // votes[64 * row + x] += bit x of rows[row]
+  void (*add_votes)(const std::uint64_t* rows, int count, std::int16_t* votes);
 };
 
 // Each is null where the compiler's target lacks the instruction set.

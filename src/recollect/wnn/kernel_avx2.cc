@@ -166,22 +166,17 @@ AVX2 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int e
 }
 
 AVX2 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
-                   std::uint8_t* near) {
-  return FindNearFrom(0, views, entry, limit, near);
+                   std::uint64_t* near) {
+  return FindNearOf(views, entry, limit, near);
 }
 
-AVX2 void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
-                       std::uint64_t& squares) {
-  AddDistancesFrom(0, views, entry, sum, squares);
-}
-
-AVX2 void SpreadVotes(const std::uint8_t* near, int stride, int from, int to, std::uint8_t* scratch,
-                      std::uint16_t* votes) {
-  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+AVX2 void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
+                       std::uint64_t& sum, std::uint64_t& squares) {
+  AddDistancesOf(views, entries, count, sum, squares);
 }
 
 constexpr Kernel kKernel = {"avx2", Cells,     BlurColumns, BlurRow,      Probe,
-                            Scan,   ScanBatch, FindNear,    AddDistances, SpreadVotes};
+                            Scan,   ScanBatch, FindNear,    AddDistances, PlainAddVotes};
 
 }  // namespace
 

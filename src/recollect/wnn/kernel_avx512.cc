@@ -202,49 +202,75 @@ AVX512 void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int
   ProbeEntry(entry, query, begin, end);
 }
 
-AVX512 inline __m512i DistancesUnder(const NeuronViews& views, int d, __m512i low, __m512i high) {
-  return _mm512_add_epi64(Different(Load(views.low + d), low),
-                          Different(Load(views.high + d), high));
+// Distances under displacements [d, d + kLane), of which only those of `mask` are there.
+AVX512 inline __m512i DistancesUnder(const NeuronViews& views, int d, __mmask8 mask,
+                                     const __m512i entry[2]) {
+  const __m512i low = _mm512_maskz_loadu_epi64(mask, views.low + d);
+  const __m512i high = _mm512_maskz_loadu_epi64(mask, views.high + d);
+  return _mm512_add_epi64(Different(low, entry[0]), Different(high, entry[1]));
 }
 
 AVX512 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
-                     std::uint8_t* near) {
-  const __m512i low = _mm512_set1_epi64(static_cast<long long>(entry[0]));
-  const __m512i high = _mm512_set1_epi64(static_cast<long long>(entry[1]));
+                     std::uint64_t* near) {
+  const NeuronViews own = views;  // that no store may touch
+  const __m512i words[2] = {_mm512_set1_epi64(static_cast<long long>(entry[0])),
+                            _mm512_set1_epi64(static_cast<long long>(entry[1]))};
   const __m512i most = _mm512_set1_epi64(limit);
-  unsigned any = 0;
+  std::uint64_t any = 0;
   int d = 0;
-  for (; d + kLane <= views.count; d += kLane) {
-    const __mmask8 is_near = _mm512_cmple_epu64_mask(DistancesUnder(views, d, low, high), most);
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(near + d), _mm_maskz_set1_epi8(is_near, 1));
-    any |= is_near;
+  for (; d + 64 <= own.count; d += 64) {
+    std::uint64_t bits = 0;
+    for (int lane = 0; lane < 64; lane += kLane) {
+      const __m512i distances = DistancesUnder(own, d + lane, 0xff, words);
+      bits |= std::uint64_t{_mm512_cmple_epi64_mask(distances, most)} << lane;
+    }
+    near[d / 64] = bits;
+    any |= bits;
   }
-  return FindNearFrom(d, views, entry, limit, near) || any != 0;
+  if (d == own.count) return any != 0;
+  std::uint64_t bits = 0;
+  for (int lane = 0; d + lane < own.count; lane += kLane) {
+    const int left = own.count - d - lane;
+    const auto mask = static_cast<__mmask8>(left >= kLane ? 0xff : (1 << left) - 1);
+    const __m512i distances = DistancesUnder(own, d + lane, mask, words);
+    bits |= std::uint64_t{_mm512_mask_cmple_epi64_mask(mask, distances, most)} << lane;
+  }
+  near[d / 64] = bits;
+  return (any | bits) != 0;
 }
 
-AVX512 void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
-                         std::uint64_t& squares) {
-  const __m512i low = _mm512_set1_epi64(static_cast<long long>(entry[0]));
-  const __m512i high = _mm512_set1_epi64(static_cast<long long>(entry[1]));
+AVX512 void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
+                         std::uint64_t& sum, std::uint64_t& squares) {
   __m512i sums = _mm512_setzero_si512(), all_squares = _mm512_setzero_si512();
-  int d = 0;
-  for (; d + kLane <= views.count; d += kLane) {
-    const __m512i distances = DistancesUnder(views, d, low, high);
-    sums = _mm512_add_epi64(sums, distances);
-    all_squares = _mm512_add_epi64(all_squares, _mm512_mul_epu32(distances, distances));
+  for (int d = 0; d < views.count; d += kLane) {
+    const int left = views.count - d;
+    const auto mask = static_cast<__mmask8>(left >= kLane ? 0xff : (1 << left) - 1);
+    for (int e = 0; e < count; ++e) {
+      const __m512i words[2] = {_mm512_set1_epi64(static_cast<long long>(entries[2 * e])),
+                                _mm512_set1_epi64(static_cast<long long>(entries[2 * e + 1]))};
+      const __m512i distances = DistancesUnder(views, d, mask, words);
+      sums = _mm512_mask_add_epi64(sums, mask, sums, distances);
+      all_squares = _mm512_mask_add_epi64(all_squares, mask, all_squares,
+                                          _mm512_mul_epu32(distances, distances));
+    }
   }
   sum += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
   squares += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(all_squares));
-  AddDistancesFrom(d, views, entry, sum, squares);
 }
 
-AVX512 void SpreadVotes(const std::uint8_t* near, int stride, int from, int to,
-                        std::uint8_t* scratch, std::uint16_t* votes) {
-  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+AVX512 void AddVotes(const std::uint64_t* rows, int count, std::int16_t* votes) {
+  const __m512i one = _mm512_set1_epi16(1);
+  for (int row = 0; row < count; ++row, votes += 64) {
+    for (int half = 0; half < 2; ++half) {
+      const __m512i before = _mm512_loadu_si512(votes + 32 * half);
+      const auto bits = static_cast<__mmask32>(rows[row] >> (32 * half));
+      _mm512_storeu_si512(votes + 32 * half, _mm512_mask_add_epi16(before, bits, before, one));
+    }
+  }
 }
 
 constexpr Kernel kKernel = {"avx512", Cells,     BlurColumns, BlurRow,      Probe,
-                            Scan,     ScanBatch, FindNear,    AddDistances, SpreadVotes};
+                            Scan,     ScanBatch, FindNear,    AddDistances, AddVotes};
 
 }  // namespace
 

@@ -34,37 +34,38 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
   return std::popcount(views.low[d] ^ entry[0]) + std::popcount(views.high[d] ^ entry[1]);
 }
 
-[[gnu::always_inline]] inline bool FindNearFrom(int first, const NeuronViews& views,
-                                                const std::uint64_t* entry, int limit,
-                                                std::uint8_t* near) {
-  bool any = false;
-  for (int d = first; d < views.count; ++d) {
-    const bool is_near = DistanceUnder(views, d, entry) <= limit;
-    near[d] = is_near ? 1 : 0;
-    any |= is_near;
+[[gnu::always_inline]] inline bool FindNearOf(const NeuronViews& views, const std::uint64_t* entry,
+                                              int limit, std::uint64_t* near) {
+  std::uint64_t any = 0;
+  for (int begin = 0; begin < views.count; begin += 64) {
+    const int end = begin + 64 < views.count ? begin + 64 : views.count;
+    std::uint64_t bits = 0;
+    for (int d = begin; d < end; ++d) {
+      bits |= std::uint64_t{DistanceUnder(views, d, entry) <= limit} << (d - begin);
+    }
+    near[begin / 64] = bits;
+    any |= bits;
   }
-  return any;
+  return any != 0;
 }
 
-[[gnu::always_inline]] inline void AddDistancesFrom(int first, const NeuronViews& views,
-                                                    const std::uint64_t* entry, std::uint64_t& sum,
-                                                    std::uint64_t& squares) {
-  for (int d = first; d < views.count; ++d) {
-    const auto distance = static_cast<std::uint64_t>(DistanceUnder(views, d, entry));
-    sum += distance;
-    squares += distance * distance;
+[[gnu::always_inline]] inline void AddDistancesOf(const NeuronViews& views,
+                                                  const std::uint64_t* entries, int count,
+                                                  std::uint64_t& sum, std::uint64_t& squares) {
+  for (int e = 0; e < count; ++e) {
+    for (int d = 0; d < views.count; ++d) {
+      const auto distance = static_cast<std::uint64_t>(DistanceUnder(views, d, entries + 2 * e));
+      sum += distance;
+      squares += distance * distance;
+    }
   }
 }
 
-[[gnu::always_inline]] inline void SpreadOverNeighbours(const std::uint8_t* near, int stride,
-                                                        int from, int to, std::uint8_t* scratch,
-                                                        std::uint16_t* votes) {
-  for (int i = from - stride; i < to + stride; ++i) {
-    scratch[i] = static_cast<std::uint8_t>(near[i - 1] | near[i] | near[i + 1]);
-  }
-  for (int i = from; i < to; ++i) {
-    votes[i] = static_cast<std::uint16_t>(votes[i] +
-                                          (scratch[i - stride] | scratch[i] | scratch[i + stride]));
+inline void PlainAddVotes(const std::uint64_t* rows, int count, std::int16_t* votes) {
+  for (int row = 0; row < count; ++row, votes += 64) {
+    for (std::uint64_t left = rows[row]; left != 0; left &= left - 1) {
+      ++votes[std::countr_zero(left)];
+    }
   }
 }
 

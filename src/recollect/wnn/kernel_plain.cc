@@ -77,23 +77,19 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit, std::uint8_t* near) {
-  return FindNearFrom(0, views, entry, limit, near);
+bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
+              std::uint64_t* near) {
+  return FindNearOf(views, entry, limit, near);
 }
 
-void AddDistances(const NeuronViews& views, const std::uint64_t* entry, std::uint64_t& sum,
-                  std::uint64_t& squares) {
-  AddDistancesFrom(0, views, entry, sum, squares);
-}
-
-void SpreadVotes(const std::uint8_t* near, int stride, int from, int to, std::uint8_t* scratch,
-                 std::uint16_t* votes) {
-  SpreadOverNeighbours(near, stride, from, to, scratch, votes);
+void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
+                  std::uint64_t& sum, std::uint64_t& squares) {
+  AddDistancesOf(views, entries, count, sum, squares);
 }
 
 }  // namespace
 
 const Kernel kPlainKernel = {"plain", PlainCells, BlurColumns, PlainBlurRow, Probe,
-                             Scan,    ScanBatch,  FindNear,    AddDistances, SpreadVotes};
+                             Scan,    ScanBatch,  FindNear,    AddDistances, PlainAddVotes};
 
 }  // namespace recollect::wnn

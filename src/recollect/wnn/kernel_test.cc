@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <string>
 #include <tuple>
@@ -161,16 +162,16 @@ TEST(Kernel, SkipsHalfOfThePatternsOnlyWhereTheOtherHalfRulesThemOut) {
 
 TEST(Kernel, CloserLooksAgreeWithThePlainOnes) {
   for (const Content content : {Content::kRandom, Content::kFewBits, Content::kNearQuery}) {
-    for (int count = 1; count <= 70; ++count) {
+    for (int count = 1; count <= 140; ++count) {
       const auto seed = static_cast<std::uint64_t>(count);
       const Words words = Fill(2 * static_cast<std::size_t>(count), content, seed);
-      const Words entry = Fill(kWords, content, ~seed);
+      const Words entries = Fill(3 * kWords, content, ~seed);
       const NeuronViews views{words.data(), words.data() + count, count};
       const auto look = [&](const Kernel& kernel, int limit) {
-        std::vector<std::uint8_t> near(static_cast<std::size_t>(count) + 1, 7);
-        const bool any = kernel.find_near(views, entry.data(), limit, near.data());
+        Words near(static_cast<std::size_t>(count + 63) / 64 + 1, 7);
+        const bool any = kernel.find_near(views, entries.data(), limit, near.data());
         std::uint64_t sum = 5, squares = 6;
-        kernel.add_distances(views, entry.data(), sum, squares);
+        kernel.add_distances(views, entries.data(), 3, sum, squares);
         return std::tuple(near, any, sum, squares);
       };
       for (const Kernel* kernel : Kernels()) {
@@ -178,27 +179,22 @@ TEST(Kernel, CloserLooksAgreeWithThePlainOnes) {
           ASSERT_EQ(look(*kernel, limit), look(kPlainKernel, limit)) << kernel->name;
         }
       }
-      EXPECT_EQ(std::get<0>(look(kPlainKernel, 128)).back(), 7);
+      const auto [near, any, sum, squares] = look(kPlainKernel, 128);
+      EXPECT_EQ(near.back(), 7U);
+      EXPECT_EQ(std::popcount(near.front()), std::min(count, 64));
       EXPECT_FALSE(std::get<1>(look(kPlainKernel, -1)));
     }
   }
 }
 
-TEST(Kernel, VotesSpreadToNeighboursAndNoFurther) {
-  constexpr int kColumns = 5, kRows = 4, kStride = kColumns + 2, kSize = kStride * (kRows + 2);
-  const auto at = [](int x, int y) { return static_cast<std::size_t>((y + 1) * kStride + x + 1); };
-  std::vector<std::uint8_t> near(kSize, 0);
-  near[at(0, 1)] = near[at(4, 3)] = near[at(3, 3)] = 1;
+TEST(Kernel, VotesAreAddedBitByBit) {
+  const Words rows = {0x8000000000000001, 0, ~std::uint64_t{0}, 0x123456789abcdef0};
   for (const Kernel* kernel : Kernels()) {
-    std::vector<std::uint8_t> scratch(kSize, 0);
-    std::vector<std::uint16_t> votes(kSize, 10);
-    kernel->spread_votes(near.data(), kStride, kStride + 1, kSize - kStride - 1, scratch.data(),
-                         votes.data());
-    for (int y = 0; y < kRows; ++y) {
-      for (int x = 0; x < kColumns; ++x) {
-        const bool beside = (x <= 1 && y <= 2) || (x >= 2 && y >= 2);
-        EXPECT_EQ(votes[at(x, y)], beside ? 11 : 10) << kernel->name << " " << x << " " << y;
-      }
+    std::vector<std::int16_t> votes(64 * 5, 10);
+    kernel->add_votes(rows.data(), 4, votes.data());
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+      const bool set = i / 64 < 4 && (rows[i / 64] >> (i % 64) & 1) != 0;
+      ASSERT_EQ(votes[i], set ? 11 : 10) << kernel->name << " " << i;
     }
   }
 }

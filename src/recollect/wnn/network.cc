@@ -11,6 +11,7 @@ namespace recollect::wnn {
 namespace {
 
 constexpr double kReferenceWidth = 640;
+constexpr int kMostColumns = 56;           // what one read of a word finds wherever it begins
 constexpr std::uint64_t kOrderStream = 0;  // sub-streams of the seed
 constexpr std::uint64_t kSynapseStream = 1;
 
@@ -85,6 +86,8 @@ Displacements CloserDisplacementsOf(const NetworkOptions& options) {
           "network", "closer_step must divide shift_step, by 16 at most");
   const Displacements coarse = DisplacementsOf(options);
   const int finer = options.shift_step / options.closer_step;
+  Require((coarse.columns - 1) * finer < kMostColumns, "network",
+          "closer_step must go 27 times into shift_x at most");
   return {(coarse.columns - 1) * finer + 1, (coarse.rows - 1) * finer + 1, options.closer_step};
 }
 
