@@ -33,7 +33,7 @@ enum class Filter {
 // Likelihood of a place: (its support / neurons + floor) ^ trust (its votes / neurons + floor) ^
 // sharpness. Fit on laps by Calibrate.
 struct VoteModel {
-  double floor = 0.02, trust = 1, sharpness = 1;
+  double floor = 0.02, trust = 0.75, sharpness = 1;
 };
 
 struct SequenceOptions {
