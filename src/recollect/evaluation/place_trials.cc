@@ -175,6 +175,11 @@ std::vector<Variant> AblationVariants() {
   });
   add("recollect", best, none);
   add("recollect, no closer look", best, [](Options& o) { o.closer_step = 0; });
+  add("recollect, no parts", best, [](Options& o) { o.parts_x = o.parts_y = 0; });
+  add("recollect, 4 x 3 parts", best, [](Options& o) {
+    o.parts_x = 4;
+    o.parts_y = 3;
+  });
   add("recollect, no displacements", best, [](Options& o) { o.shift_x = o.shift_y = 0; });
   add("recollect, sideways only", best, [](Options& o) { o.shift_y = 0; });
   add("recollect, compare cells", best, [](Options& o) { o.cells = wnn::Cells::kCompare; });

@@ -18,6 +18,13 @@ TuneAnswer Displaced(const std::string& flags, int x, int y, int step, int close
           }};
 }
 
+TuneAnswer Parts(const std::string& flags, int x, int y) {
+  return {flags, [=](NetworkOptions& o) {
+            o.parts_x = x;
+            o.parts_y = y;
+          }};
+}
+
 }  // namespace
 
 std::vector<TuneQuestion> TuneQuestions() {
@@ -27,6 +34,9 @@ std::vector<TuneQuestion> TuneQuestions() {
         Displaced("--closer-step 0", 64, 32, 16, 0),
         Displaced("--shift-x 72 --shift-y 24 --shift-step 24 --closer-step 6", 72, 24, 24, 6),
         Displaced("--shift-x 96 --shift-y 48", 96, 48, 16, 4)}},
+      {"parts",
+       {Parts("--parts-x 0 --parts-y 0", 0, 0), Parts("--parts-x 4 --parts-y 3", 4, 3),
+        Parts("--parts-x 8 --parts-y 6", 8, 6)}},
       {"what synapses read",
        {{"--code gray", [](NetworkOptions& o) { o.code = wnn::Code::kGray; }}}},
       {"a bit",
