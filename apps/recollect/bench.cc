@@ -11,6 +11,7 @@
 #include "recollect/benchmark/cnn_bench.h"
 #include "recollect/benchmark/features_bench.h"
 #include "recollect/benchmark/pipeline_bench.h"
+#include "recollect/benchmark/recognition_bench.h"
 #include "recollect/benchmark/search_bench.h"
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -94,6 +95,39 @@ void AddFeatures(CLI::App& bench) {
       ->capture_default_str();
 }
 
+struct RecognitionFlags {
+  Common common;
+  LapFlags laps;
+  std::string live;
+  double spacing_m = 5;
+  RecognitionBenchOptions options;
+};
+
+void RunRecognition(RecognitionFlags flags) {
+  flags.options.threads = flags.common.threads;
+  flags.options.seed = flags.common.seed;
+  const std::vector<Lap> live = ReadLapRange(flags.live, ParseFormat(flags.laps.format));
+  Require(live.size() == 1, "--live", "is one lap");
+  const nlohmann::json figures = RunRecognitionBench(ReadPlaces(flags.laps.Read(), flags.spacing_m),
+                                                     live.front(), flags.options);
+  fmt::print("{}", DescribeRecognitionBench(figures));
+  WriteFigures(flags.common, figures);
+}
+
+void AddRecognition(CLI::App& bench) {
+  const auto flags = std::make_shared<RecognitionFlags>();
+  CLI::App* command = AddCommand(bench, "recognition",
+                                 "Both configurations of the weightless network, side by side",
+                                 flags->common, [flags] { RunRecognition(*flags); });
+  flags->laps.AddTo(*command);
+  command->add_option("--live", flags->live, "the live lap")->type_name("DIR")->required();
+  command->add_option("--spacing", flags->spacing_m, "metres between key frames of a lap")
+      ->capture_default_str();
+  command->add_option("--images", flags->options.images, "so many, evenly spread over the live lap")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+}
+
 struct CnnFlags {
   Common common;
   CnnBenchOptions options;
@@ -165,6 +199,7 @@ void AddBench(CLI::App& app) {
   AddWnnFlags(*search, options.corpus.network);
   AddPipeline(*bench);
   AddFeatures(*bench);
+  AddRecognition(*bench);
   AddCnn(*bench);
 }
 

@@ -21,7 +21,7 @@ struct Perturbation {
   double shade = 0.75;  // gain from one side of the image to the other, either way
   double tint = 0.2;    // of blue and red, either way
   double bend = 0.35;   // of the half left of the middle wider by so much, and of the other
-                       // narrower: what walls do when one goes nearer to one of them
+                        // narrower: what walls do when one goes nearer to one of them
   double blur = 0.009;  // standard deviation at most, as a share of the width
   double noise = 6;     // gray levels, standard deviation
   double cover = 0.35;  // side of a rectangle put before the scene, at most, as a share
