@@ -12,6 +12,9 @@ namespace recollect::wnn {
 namespace {
 
 constexpr int kGrain = 16;  // neurons that a thread takes at a time
+// A neuron that is near more of the usual entries than that tells none of them: the camera's own
+// frame.
+constexpr double kCommon = 0.25;
 
 NeuronViews ViewsOf(const DisplacedPatterns& live, std::size_t neuron) {
   return {live.Of(neuron, 0).data(), live.Of(neuron, 1).data(), live.grid.count()};
@@ -101,6 +104,7 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
   if (entries.empty()) return near;
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<std::uint64_t> own(kWords * entries.size());
+    std::vector<std::uint64_t> seen(static_cast<std::size_t>(live.grid.count() / 64 + 1));
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
       Gather(entries, n, own);
       std::uint64_t sum = 0, squares = 0;
@@ -112,6 +116,12 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
       // A neuron to which all entries look alike is of no use below one bit of spread.
       const double limit = mean - kNearDeviations * std::sqrt(std::max(1.0, variance));
       near[n] = std::max(-1, static_cast<int>(std::floor(limit)));
+      int alike = 0;
+      for (std::size_t e = 0; e < entries.size() && near[n] >= 0; ++e) {
+        alike +=
+            Kernels().front()->find_near(ViewsOf(live, n), &own[kWords * e], near[n], seen.data());
+      }
+      if (alike > kCommon * static_cast<double>(entries.size())) near[n] = -1;
     }
   });
   return near;

@@ -23,7 +23,8 @@ namespace recollect::wnn {
 inline constexpr double kNearDeviations = 3;
 
 // By neuron, the largest distance at which it votes, -1: none. `usual`: entries to learn that
-// from, seen under all displacements of `live`.
+// from, seen under all displacements of `live`. Who is that near to more than a quarter of them, as
+// what sees the camera's own frame is, does not vote.
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
                                std::span<const int> usual, ThreadPool& pool);
 

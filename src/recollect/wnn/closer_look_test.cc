@@ -126,6 +126,38 @@ TEST(CloserLook, FindsPlacesWhosePartsHaveMovedApart) {
   }
 }
 
+TEST(CloserLook, WhatIsInEveryImageDoesNotVote) {
+  ThreadPool pool(2);
+  Encoder encoder(RecollectNetwork(), 320, 240, pool);
+  Memory memory(RecollectNetwork().neurons());
+  const cv::Mat bonnet = Scene(77);
+  const auto with_bonnet = [&](std::uint64_t seed) {
+    cv::Mat image = Scene(seed).clone();
+    bonnet.colRange(0, 110).copyTo(image.colRange(0, 110));
+    return image;
+  };
+  std::vector<int> all;
+  for (std::uint64_t place = 0; place < 20; ++place) {
+    all.push_back(memory.Append(encoder.Encode(View(with_bonnet(place)))));
+  }
+  const auto near = NearDistances(
+      memory, encoder.EncodeDisplaced(View(with_bonnet(5)), encoder.displacements()), all, pool);
+  int silent = 0, awake = 0, behind = 0, before = 0;
+  for (int n = 0; n < memory.neurons(); ++n) {
+    const Pixel cell = encoder.synapses().Cell(n);
+    const bool votes = near[static_cast<std::size_t>(n)] >= 0;
+    if (cell.x < 7) {  // 70 pixels: well behind the bonnet
+      ++behind;
+      silent += !votes;
+    } else if (cell.x >= 14) {
+      ++before;
+      awake += votes;
+    }
+  }
+  EXPECT_GT(silent, 0.95 * behind);
+  EXPECT_GT(awake, 0.95 * before);
+}
+
 TEST(CloserLook, IsTheSameWithAnyNumberOfThreads) {
   Scenes one(8, 1), three(8, 3);
   const cv::Mat live = Moved(Scene(3), 1.05, 7, 3);
