@@ -9,13 +9,10 @@
 
 namespace recollect::wnn {
 
-// The grids of displacements of both looks, and how one of the first is numbered in the second.
+// The grids of displacements of both looks; every finer()-th of the second is in the first.
 struct Grids {
   explicit Grids(const Encoder& encoder);
   int finer() const { return first.step / std::max(1, closer.step); }
-  int Closer(int displacement) const {
-    return (displacement / first.columns * closer.columns + displacement % first.columns) * finer();
-  }
 
   Displacements first, closer;  // the same where there is no second look
   bool look_closer;

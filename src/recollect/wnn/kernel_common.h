@@ -69,6 +69,12 @@ inline void PlainAddVotes(const std::uint64_t* rows, int count, std::int16_t* vo
   }
 }
 
+// Kernel::find_near and add_distances in plain C++.
+bool PlainFindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
+                   std::uint64_t* near);
+void PlainAddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
+                       std::uint64_t& sum, std::uint64_t& squares);
+
 // Kernel::cells in plain C++.
 void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                 std::uint64_t* pattern);

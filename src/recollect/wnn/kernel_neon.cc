@@ -73,18 +73,8 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
-              std::uint64_t* near) {
-  return FindNearOf(views, entry, limit, near);
-}
-
-void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                  std::uint64_t& sum, std::uint64_t& squares) {
-  AddDistancesOf(views, entries, count, sum, squares);
-}
-
-constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns, PlainBlurRow, Probe,
-                            Scan,   ScanBatch,  FindNear,    AddDistances, PlainAddVotes};
+constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns,   PlainBlurRow,      Probe,
+                            Scan,   ScanBatch,  PlainFindNear, PlainAddDistances, PlainAddVotes};
 
 }  // namespace
 

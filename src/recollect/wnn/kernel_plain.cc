@@ -40,6 +40,16 @@ void PlainBlurRow(const BlurTaps& taps, const std::int16_t* sums, int stride, in
   }
 }
 
+bool PlainFindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
+                   std::uint64_t* near) {
+  return FindNearOf(views, entry, limit, near);
+}
+
+void PlainAddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
+                       std::uint64_t& sum, std::uint64_t& squares) {
+  AddDistancesOf(views, entries, count, sum, squares);
+}
+
 namespace {
 
 std::int64_t Scan(const ScanBlock& block, const ScanQuery& query, int begin, int end) {
@@ -77,19 +87,9 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
-              std::uint64_t* near) {
-  return FindNearOf(views, entry, limit, near);
-}
-
-void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                  std::uint64_t& sum, std::uint64_t& squares) {
-  AddDistancesOf(views, entries, count, sum, squares);
-}
-
 }  // namespace
 
-const Kernel kPlainKernel = {"plain", PlainCells, BlurColumns, PlainBlurRow, Probe,
-                             Scan,    ScanBatch,  FindNear,    AddDistances, PlainAddVotes};
+const Kernel kPlainKernel = {"plain", PlainCells, BlurColumns,   PlainBlurRow,      Probe,
+                             Scan,    ScanBatch,  PlainFindNear, PlainAddDistances, PlainAddVotes};
 
 }  // namespace recollect::wnn
