@@ -5,6 +5,7 @@
 #include <cstring>
 #include <mutex>
 
+#include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/wnn/kernel.h"
 
@@ -12,9 +13,9 @@ namespace recollect::wnn {
 namespace {
 
 constexpr int kGrain = 16;  // neurons that a thread takes at a time
-// A neuron that is near more of the usual entries than that tells none of them: the camera's own
-// frame.
-constexpr double kCommon = 0.25;
+// A neuron that is near more of the usual entries tells none of them apart: it sees the camera's
+// own frame. Not a share of them: of a short road, every lap's views of one place are a good part.
+constexpr int kCommon = 16;
 
 NeuronViews ViewsOf(const DisplacedPatterns& live, std::size_t neuron) {
   return {live.Of(neuron, 0).data(), live.Of(neuron, 1).data(), live.grid.count()};
@@ -58,7 +59,9 @@ class Voter {
       : grid_(grid),
         near_(static_cast<std::size_t>(grid.count() / 64 + 2)),  // rows are read by whole words
         wide_(static_cast<std::size_t>(grid.rows) + 2),
-        rows_(static_cast<std::size_t>(grid.rows)) {}
+        rows_(static_cast<std::size_t>(grid.rows)) {
+    Require(grid.columns <= 56, "closer look", "56 columns of displacements are the most");
+  }
 
   void Vote(const NeuronViews& views, const std::uint64_t* entry, int limit, std::int16_t* votes) {
     if (!kernel_.find_near(views, entry, limit, near_.data())) return;
@@ -121,7 +124,7 @@ std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& li
         alike +=
             Kernels().front()->find_near(ViewsOf(live, n), &own[kWords * e], near[n], seen.data());
       }
-      if (alike > kCommon * static_cast<double>(entries.size())) near[n] = -1;
+      if (alike > kCommon) near[n] = -1;
     }
   });
   return near;

@@ -23,19 +23,19 @@ namespace recollect::wnn {
 inline constexpr double kNearDeviations = 3;
 
 // By neuron, the largest distance at which it votes, -1: none. `usual`: entries to learn that
-// from, seen under all displacements of `live`. Who is that near to more than a quarter of them, as
-// what sees the camera's own frame is, does not vote.
+// from, seen under all displacements of `live`. Who is that near to more than 16 of them, as what
+// sees the camera's own frame is, does not vote.
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
                                std::span<const int> usual, ThreadPool& pool);
 
 struct Look {
-  int halves =
-      0;  // half votes: of the whole image and of all parts; twice the former without parts
+  // Half votes: of the whole image and of all parts; twice the former without parts.
+  int halves = 0;
   // Under which they were given: the whole image's, then each part's; of equals the first.
   std::vector<int> displacements;
 };
 // By entry of `entries`, its votes under the displacements that give most. parts: as
-// Encoder::parts; empty: none.
+// Encoder::parts; empty: none. Throws Error where a row has more than 56 displacements.
 std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live,
                              std::span<const int> near, std::span<const int> entries,
                              std::span<const int> parts, ThreadPool& pool);

@@ -31,7 +31,7 @@ struct DisplacedAnswers {
   std::vector<Answer> answers;  // by neuron: the nearest entry under any displacement
   std::vector<int> seen_under;  // and the first displacement under which it is so near
 };
-// Goes through the memory once for all displacements.
+// Goes through the memory once for all displacements. Throws Error on another network's patterns.
 DisplacedAnswers AskDisplaced(const Memory& memory, const DisplacedPatterns& live, ThreadPool& pool,
                               const SearchOptions& search = {});
 
