@@ -75,6 +75,7 @@ struct TrainCommand {
     take("--patience", options.patience, given.patience);
     options.seed = flags.common.seed;
     options.threads = flags.common.threads;
+    options.device = given.device;
     options.out = given.out;
     options.csv = given.csv;
     options.live = given.live;
@@ -182,6 +183,8 @@ void AddTrain(CLI::App& app) {
                   "processes to train in; on several machines set RANK, WORLD_SIZE, MASTER_ADDR "
                   "and MASTER_PORT instead")
       ->check(CLI::Range(1, 64));
+  command.add_option("--device", given.device,
+                     "cpu, cuda or cuda:N; without: a graphics card where libtorch sees one");
   command.add_option("--checkpoint", given.checkpoint, "default: OUT.checkpoint");
   command.add_option("--start", given.start, "a model to begin with; without: fresh weights")
       ->check(CLI::ExistingFile);

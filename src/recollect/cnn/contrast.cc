@@ -1,6 +1,7 @@
 #include "recollect/cnn/contrast.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace recollect::cnn {
@@ -20,16 +21,28 @@ cv::Mat LocalMean(const cv::Mat& image) {
 
 }  // namespace
 
-cv::Mat NormaliseContrast(const cv::Mat& image) {
-  constexpr double kFloor = 3;
-  cv::Mat centred;
-  image.convertTo(centred, CV_32F);
-  centred -= LocalMean(centred);
-  cv::Mat deviation;
-  cv::transform(cv::abs(centred), deviation, cv::Matx13f(1.F / 3, 1.F / 3, 1.F / 3));
-  cv::Mat gain = 1.0 / (LocalMean(deviation) + kFloor);
-  cv::cvtColor(gain, gain, cv::COLOR_GRAY2BGR);
-  return centred.mul(gain);
+void NormaliseContrast(std::span<cv::Mat> planes) {
+  constexpr float kFloor = 3;
+  cv::Mat deviation = cv::Mat::zeros(planes.front().size(), CV_32F);
+  const auto count = static_cast<std::ptrdiff_t>(deviation.total());
+  auto* deviations = deviation.ptr<float>();
+  for (cv::Mat& plane : planes) {
+    const cv::Mat mean = LocalMean(plane);
+    auto* values = plane.ptr<float>();
+    const auto* means = mean.ptr<float>();
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      values[i] -= means[i];
+      deviations[i] += std::abs(values[i]);
+    }
+  }
+  cv::Mat gain = LocalMean(deviation);
+  auto* gains = gain.ptr<float>();
+  const float share = 1 / static_cast<float>(planes.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) gains[i] = 1 / (share * gains[i] + kFloor);
+  for (cv::Mat& plane : planes) {
+    auto* values = plane.ptr<float>();
+    for (std::ptrdiff_t i = 0; i < count; ++i) values[i] *= gains[i];
+  }
 }
 
 }  // namespace recollect::cnn

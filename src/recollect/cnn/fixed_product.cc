@@ -18,24 +18,24 @@ constexpr float kGreatest = 32767;
 using Shorts = std::int16_t __attribute__((vector_size(kLanes * sizeof(std::int16_t))));
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 
-std::int64_t Padded(std::int64_t inputs) { return (inputs + kLanes - 1) / kLanes * kLanes; }
+std::int64_t RoundedUp(std::int64_t count, std::int64_t to) { return (count + to - 1) / to * to; }
 
-// sums[r][o] = source row r . weight row o, both `stride` numbers long. Outputs beyond those there
-// are repeat the last.
+// sums[r][o] = source row r . weight row o, both `stride` numbers long; the weights of kOutputs
+// rows a vector each in turn.
 template <std::int64_t rows>
 [[gnu::always_inline]] inline void TileOf(const float* source, const std::int16_t* weights,
-                                          std::int64_t outputs, std::int64_t stride, float* sums) {
-  const std::int16_t* by[kOutputs];
-  for (std::int64_t o = 0; o < kOutputs; ++o) by[o] = weights + std::min(o, outputs - 1) * stride;
+                                          std::int64_t stride, float* sums) {
+  constexpr std::int64_t kAhead = 8192 / sizeof(std::int16_t);  // what memory takes to answer
   Floats total[rows][kOutputs] = {};
   for (std::int64_t k = 0; k < stride; k += kLanes) {
     Floats values[rows];
     for (std::int64_t r = 0; r < rows; ++r) {
       std::memcpy(&values[r], source + r * stride + k, sizeof(Floats));
     }
-    for (std::int64_t o = 0; o < kOutputs; ++o) {
+    for (std::int64_t o = 0; o < kOutputs; ++o, weights += kLanes) {
+      if (o % 2 == 0) __builtin_prefetch(weights + kAhead, 0, 2);  // two vectors a line
       Shorts whole;
-      std::memcpy(&whole, by[o] + k, sizeof whole);
+      std::memcpy(&whole, weights, sizeof whole);
       const Floats weight = __builtin_convertvector(whole, Floats);
       for (std::int64_t r = 0; r < rows; ++r) total[r][o] += values[r] * weight;
     }
@@ -51,17 +51,17 @@ template <std::int64_t rows>
 
 // For 1 to kRows rows.
 RECOLLECT_FOR_EACH_PROCESSOR
-void Tile(const float* source, std::int64_t rows, const std::int16_t* weights, std::int64_t outputs,
-          std::int64_t stride, float* sums) {
+void Tile(const float* source, std::int64_t rows, const std::int16_t* weights, std::int64_t stride,
+          float* sums) {
   switch (rows) {
     case 1:
-      return TileOf<1>(source, weights, outputs, stride, sums);
+      return TileOf<1>(source, weights, stride, sums);
     case 2:
-      return TileOf<2>(source, weights, outputs, stride, sums);
+      return TileOf<2>(source, weights, stride, sums);
     case 3:
-      return TileOf<3>(source, weights, outputs, stride, sums);
+      return TileOf<3>(source, weights, stride, sums);
     default:
-      return TileOf<kRows>(source, weights, outputs, stride, sums);
+      return TileOf<kRows>(source, weights, stride, sums);
   }
 }
 
@@ -71,7 +71,8 @@ FixedProduct::FixedProduct(const torch::Tensor& weight, const torch::Tensor& bia
     : outputs_(weight.size(0)),
       inputs_(weight.size(1)),
       slope_(slope),
-      weights_(static_cast<std::size_t>(outputs_ * Padded(inputs_)), 0) {
+      weights_(static_cast<std::size_t>(RoundedUp(outputs_, kOutputs) * RoundedUp(inputs_, kLanes)),
+               0) {
   const torch::Tensor plain = weight.detach().to(torch::kFloat).contiguous();
   const torch::Tensor plain_bias = bias.detach().to(torch::kFloat).contiguous();
   bias_.assign(plain_bias.data_ptr<float>(), plain_bias.data_ptr<float>() + outputs_);
@@ -81,29 +82,22 @@ FixedProduct::FixedProduct(const torch::Tensor& weight, const torch::Tensor& bia
     for (std::int64_t k = 0; k < inputs_; ++k) greatest = std::max(greatest, std::abs(row[k]));
     const float scale = greatest > 0 ? greatest / kGreatest : 1;
     scales_.push_back(scale);
-    std::int16_t* to = weights_.data() + o * Padded(inputs_);
+    std::int16_t* to = weights_.data() + o / kOutputs * kOutputs * RoundedUp(inputs_, kLanes) +
+                       o % kOutputs * kLanes;
     for (std::int64_t k = 0; k < inputs_; ++k) {
-      to[k] = static_cast<std::int16_t>(std::lround(row[k] / scale));
+      to[k / kLanes * kLanes * kOutputs + k % kLanes] =
+          static_cast<std::int16_t>(std::lround(row[k] / scale));
     }
   }
 }
 
-const dnnl::memory& FixedProduct::Run(const dnnl::memory& source) {
-  OnednnStream().wait();
-  const std::int64_t rows = source.get_desc().dims()[0], stride = Padded(inputs_);
-  result_ =
-      dnnl::memory({{rows, outputs_}, dnnl::memory::data_type::f32, dnnl::memory::format_tag::nc},
-                   OnednnEngine());
-  const auto* from = static_cast<const float*>(source.get_data_handle());
-  std::vector<float> padded;
-  if (stride != inputs_) {
-    padded.assign(static_cast<std::size_t>(rows * stride), 0);
-    for (std::int64_t r = 0; r < rows; ++r) {
-      std::copy_n(from + r * inputs_, inputs_, padded.data() + r * stride);
-    }
-    from = padded.data();
-  }
-  auto* to = static_cast<float*>(result_.get_data_handle());
+torch::Tensor FixedProduct::Run(const torch::Tensor& rows_of_source) const {
+  const std::int64_t rows = rows_of_source.size(0), stride = RoundedUp(inputs_, kLanes);
+  const torch::Tensor source =
+      torch::constant_pad_nd(rows_of_source, {0, stride - inputs_}).contiguous();
+  const torch::Tensor result = torch::empty({rows, outputs_});
+  const auto* from = source.data_ptr<float>();
+  auto* to = result.data_ptr<float>();
   const std::int64_t blocks = (outputs_ + kOutputs - 1) / kOutputs;
   at::parallel_for(0, blocks, 16, [&](std::int64_t begin, std::int64_t end) {
     float sums[kRows * kOutputs];
@@ -112,7 +106,7 @@ const dnnl::memory& FixedProduct::Run(const dnnl::memory& source) {
       // The block's weights stay in the cache from one four of rows to the next.
       for (std::int64_t r = 0; r < rows; r += kRows) {
         const std::int64_t count = std::min(kRows, rows - r);
-        Tile(from + r * stride, count, weights_.data() + first * stride, outputs, stride, sums);
+        Tile(from + r * stride, count, weights_.data() + first * stride, stride, sums);
         for (std::int64_t i = 0; i < count; ++i) {
           for (std::int64_t o = 0; o < outputs; ++o) {
             const auto at = static_cast<std::size_t>(first + o);
@@ -123,7 +117,7 @@ const dnnl::memory& FixedProduct::Run(const dnnl::memory& source) {
       }
     }
   });
-  return result_;
+  return result;
 }
 
 }  // namespace recollect::cnn

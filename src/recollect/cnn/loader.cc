@@ -20,26 +20,19 @@ void PutMotion(const SE3& motion, float* out) {
   values = motion.Matrix().topRows<3>().cast<float>();
 }
 
-void PrepareInto(NetworkKind kind, const cv::Mat& image, float* out) {
-  cv::Mat values;
-  if (kind == NetworkKind::kCompact) {
-    values = NormaliseContrast(image);
-  } else {
-    image.convertTo(values, CV_32F, 1 / 255.0);
-  }
-  std::vector<cv::Mat> planes;
-  const std::size_t plane = values.total();
-  for (std::size_t c = 0; c < 3; ++c) planes.emplace_back(image.size(), CV_32F, out + c * plane);
-  cv::cvtColor(values, values, cv::COLOR_BGR2RGB);
-  cv::split(values, planes);
-}
-
 }  // namespace
 
-torch::Tensor PrepareImage(NetworkKind kind, const cv::Mat& image) {
-  torch::Tensor out = torch::empty({3, image.rows, image.cols});
-  PrepareInto(kind, image, out.data_ptr<float>());
-  return out;
+void PrepareImage(NetworkKind kind, const cv::Mat& image, float* out) {
+  std::vector<cv::Mat> planes;
+  cv::split(image, planes);
+  std::reverse(planes.begin(), planes.end());  // to R, G, B
+  for (cv::Mat& plane : planes) {
+    cv::Mat values(image.size(), CV_32F, out);
+    plane.convertTo(values, CV_32F, kind == NetworkKind::kCompact ? 1 : 1 / 255.0);
+    plane = values;
+    out += plane.total();
+  }
+  if (kind == NetworkKind::kCompact) NormaliseContrast(planes);
 }
 
 Batch Batch::To(const torch::Device& device) const {
@@ -64,8 +57,8 @@ Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const Pair& pair = data.pairs[chosen[i]];
     const std::size_t at = i * static_cast<std::size_t>(3 * rows * columns);
-    PrepareInto(kind, light(i, data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
-    PrepareInto(kind, light(i, data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
+    PrepareImage(kind, light(i, data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
+    PrepareImage(kind, light(i, data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
     PutMotion(data.KeyframeFromLive(pair), batch.motion.data_ptr<float>() + i * 12);
     const cv::Mat& depth = data.frames[pair.live].depth;
     if (!depth.empty()) {

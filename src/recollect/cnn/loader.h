@@ -15,9 +15,9 @@
 
 namespace recollect::cnn {
 
-// An image as the network wants it, [3, H, W] float R, G, B: contrast-normalised for the compact
-// network, values / 255 for the paper's. image: the crop, 8-bit B, G, R.
-torch::Tensor PrepareImage(NetworkKind kind, const cv::Mat& image);
+// Fills `out`, [3, H, W] of R, G, B, with an image as the network wants it: contrast-normalised for
+// the compact network, values / 255 for the paper's. image: the crop, 8-bit B, G, R.
+void PrepareImage(NetworkKind kind, const cv::Mat& image, float* out);
 
 struct Batch {
   torch::Tensor live, key;  // [B, 3, H, W]

@@ -31,9 +31,10 @@ PoseNetwork Lively(NetworkKind kind) {
 }
 
 cv::Mat Blob(const PoseNetwork& network, const cv::Mat& image) {
-  const torch::Tensor values = PrepareImage(network.info().network, image).contiguous();
   const std::vector<int> shape = {1, 3, image.rows, image.cols};
-  return cv::Mat(shape, CV_32F, values.data_ptr()).clone();
+  cv::Mat values(shape, CV_32F);
+  PrepareImage(network.info().network, image, values.ptr<float>());
+  return values;
 }
 
 class OnnxExport : public ::testing::TestWithParam<NetworkKind> {};

@@ -109,45 +109,4 @@ const memory& PackedConvolution::Run(const memory& source) {
   return ready.result;
 }
 
-PackedProduct::PackedProduct(const torch::Tensor& weight, const torch::Tensor& bias, float slope,
-                             Precision precision)
-    : outputs_(weight.size(0)),
-      type_(DataType(precision)),
-      attributes_(Rectified(slope)),
-      plain_weight_(weight),
-      bias_(ToOnednn(bias, memory::data_type::f32)) {}
-
-PackedProduct::Ready PackedProduct::Prepare(const memory::desc& source) {
-  const memory::dims in = source.dims();
-  const memory::desc out({in[0], outputs_}, type_, memory::format_tag::nc);
-  const auto describe = [&](const memory::desc& weights) {
-    return dnnl::inner_product_forward::primitive_desc(
-        {dnnl::prop_kind::forward_inference, source, weights, bias_.get_desc(), out}, attributes_,
-        OnednnEngine());
-  };
-  if (plain_weight_.defined()) {
-    const auto any =
-        describe(memory::desc({outputs_, in[1]}, type_, memory::format_tag::any)).weights_desc();
-    weight_ = Reordered(ToOnednn(plain_weight_, memory::data_type::f32), any);
-    plain_weight_.reset();
-  }
-  const auto description = describe(weight_.get_desc());
-  return {dnnl::inner_product_forward(description), memory(out, OnednnEngine())};
-}
-
-const memory& PackedProduct::Run(const memory& source) {
-  const memory::desc shape = source.get_desc();
-  auto found = ready_.find(shape.dims());
-  if (found == ready_.end()) {
-    if (ready_.size() >= kShapes) ready_.clear();
-    found = ready_.emplace(shape.dims(), Prepare(shape)).first;
-  }
-  Ready& ready = found->second;
-  ready.primitive.execute(OnednnStream(), {{DNNL_ARG_SRC, source},
-                                           {DNNL_ARG_WEIGHTS, weight_},
-                                           {DNNL_ARG_BIAS, bias_},
-                                           {DNNL_ARG_DST, ready.result}});
-  return ready.result;
-}
-
 }  // namespace recollect::cnn

@@ -58,28 +58,4 @@ class PackedConvolution {
   std::map<dnnl::memory::dims, Ready> ready_;  // by the source's shape
 };
 
-class PackedProduct {
- public:
-  // weight [O, K], bias [O].
-  PackedProduct(const torch::Tensor& weight, const torch::Tensor& bias, float slope,
-                Precision precision);
-
-  // source [R, K] in row order; the result [R, O] too, of the same type.
-  const dnnl::memory& Run(const dnnl::memory& source);
-
- private:
-  struct Ready {
-    dnnl::inner_product_forward primitive;
-    dnnl::memory result;
-  };
-  Ready Prepare(const dnnl::memory::desc& source);
-
-  std::int64_t outputs_;
-  dnnl::memory::data_type type_;
-  dnnl::primitive_attr attributes_;
-  torch::Tensor plain_weight_;
-  dnnl::memory weight_, bias_;
-  std::map<dnnl::memory::dims, Ready> ready_;
-};
-
 }  // namespace recollect::cnn

@@ -1,7 +1,8 @@
 #include "recollect/cnn/paper_engine.h"
 
+#include <algorithm>
 #include <array>
-#include <cstring>
+#include <span>
 #include <utility>
 
 #include "recollect/cnn/layer_list.h"
@@ -13,7 +14,7 @@ namespace {
 
 using dnnl::memory;
 
-constexpr std::size_t kWide = 2;  // layers done as products, before the output layer
+constexpr std::size_t kWide = 3;  // layers done as products, before the output layer
 
 PackedConvolution Packed(const ListedLayer& layer, Precision precision) {
   return {layer.weight, layer.bias, layer.slope, layer.stride, layer.padding, precision};
@@ -64,15 +65,13 @@ PaperEngine::PaperEngine(torch::nn::Sequential branch, torch::nn::Sequential top
     const ConvolutionTaps taps = taps_of(layer);
     const torch::Tensor weight = ByTaps(layer.weight).narrow(1, taps.first_tap, taps.taps);
     const torch::Tensor rows = weight.flatten(1);
-    if (precision == Precision::kFloat32) {
-      wide_.push_back({taps, FixedProduct(rows, layer.bias, layer.slope)});
-    } else {
-      wide_.push_back({taps, PackedProduct(rows, layer.bias, layer.slope, precision)});
-    }
+    wide_.push_back({taps, FixedProduct(rows, layer.bias, layer.slope)});
   }
-  Require(static_cast<std::int64_t>(wide_.front().taps.outputs.size()) ==
-              wide_.front().taps.rows * wide_.front().taps.columns,
-          "PaperEngine", "images of this size leave the network's last layers nothing to see");
+  for (const Wide& layer : std::span(wide_).first(kWide - 1)) {
+    Require(static_cast<std::int64_t>(layer.taps.outputs.size()) ==
+                layer.taps.rows * layer.taps.columns,
+            "PaperEngine", "images of this size leave the network's last layers nothing to see");
+  }
 
   // Outputs of the last product that see padding only are constants.
   const ListedLayer &before = tops[plain + kWide - 1], &last = tops.back();
@@ -107,33 +106,20 @@ memory PaperEngine::Fuse(const memory& features, std::span<const ImagePair> pair
   return fused;
 }
 
-const memory& PaperEngine::Product(Wide& layer, const memory& cells, std::int64_t batch) const {
-  // cells: [batch, cells, channels] in row order.
-  const auto outputs = static_cast<std::int64_t>(layer.taps.outputs.size());
-  const std::size_t value = memory::data_type_size(type_);
-  const std::size_t image = cells.get_desc().get_size() / static_cast<std::size_t>(batch);
-  const auto count = static_cast<std::size_t>(cells.get_desc().dims().back());
-  const std::int64_t outside =
-      static_cast<std::int64_t>(image / (count * value));  // ConvolutionTaps::sources
-  const memory rows({{batch * outputs, layer.taps.taps * static_cast<std::int64_t>(count)},
-                     type_,
-                     memory::format_tag::nc},
-                    OnednnEngine());
-  OnednnStream().wait();
-  auto* to = static_cast<std::uint8_t*>(rows.get_data_handle());
-  const auto* from = static_cast<const std::uint8_t*>(cells.get_data_handle());
-  for (std::int64_t i = 0; i < batch; ++i, from += image) {
-    for (const std::int64_t source : layer.taps.sources) {
-      if (source == outside) {
-        std::memset(to, 0, count * value);
-      } else {
-        std::memcpy(to, from + static_cast<std::size_t>(source) * count * value, count * value);
-      }
-      to += count * value;
+torch::Tensor PaperEngine::Wide::Run(const torch::Tensor& cells) const {
+  const std::int64_t batch = cells.size(0), channels = cells.size(2);
+  const std::int64_t outside = cells.size(1);  // ConvolutionTaps::sources
+  const auto outputs = static_cast<std::int64_t>(taps.outputs.size());
+  const torch::Tensor rows = torch::empty({batch * outputs, taps.taps * channels});
+  auto* to = rows.data_ptr<float>();
+  for (std::int64_t i = 0; i < batch; ++i) {
+    const auto* image = cells.data_ptr<float>() + i * outside * channels;
+    for (const std::int64_t source : taps.sources) {
+      to = source == outside ? std::fill_n(to, channels, 0.F)
+                             : std::copy_n(image + source * channels, channels, to);
     }
   }
-  return std::visit([&](auto& product) -> const memory& { return product.Run(rows); },
-                    layer.product);
+  return product.Run(rows).view({batch, outputs, -1});
 }
 
 PairAnswers PaperEngine::Answer(const torch::Tensor& images, std::span<const ImagePair> pairs) {
@@ -147,14 +133,11 @@ PairAnswers PaperEngine::Answer(const torch::Tensor& images, std::span<const Ima
   now = Fuse(now, pairs);
   for (PackedConvolution& layer : top_) now = layer.Run(now);
   const memory::dims d = now.get_desc().dims();
-  const memory nhwc = Reordered(now, {d, type_, memory::format_tag::nhwc});
-  now = memory({{batch * d[2] * d[3], d[1]}, type_, memory::format_tag::nc}, OnednnEngine(),
-               nhwc.get_data_handle());
-  for (Wide& layer : wide_) now = Product(layer, now, batch);
-  now = Reordered(now, {now.get_desc().dims(), memory::data_type::f32, memory::format_tag::nc});
+  const memory nhwc = Reordered(now, {d, memory::data_type::f32, memory::format_tag::nhwc});
   OnednnStream().wait();
-  const torch::Tensor rows = torch::from_blob(now.get_data_handle(), {batch, last_weight_.size(0)});
-  return {Se3Layer(torch::addmm(last_bias_, rows, last_weight_)), {}};
+  torch::Tensor cells = torch::from_blob(nhwc.get_data_handle(), {batch, d[2] * d[3], d[1]});
+  for (const Wide& layer : wide_) cells = layer.Run(cells);
+  return {Se3Layer(torch::addmm(last_bias_, cells.flatten(1), last_weight_)), {}};
 }
 
 }  // namespace recollect::cnn

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <mutex>
-#include <variant>
 #include <vector>
 
 #include "recollect/cnn/convolution_taps.h"
@@ -11,9 +10,9 @@
 
 namespace recollect::cnn {
 
-// The paper's network for images of one size. Its last layers, which see one or two cells and hold
-// nine tenths of the weights, are matrix products without what meets only padding: reading the
-// weights is what their time goes into.
+// The paper's network for images of one size. Its last layers, which see few cells and hold nearly
+// all of the weights, are matrix products in 32-bit floats without what meets only padding: reading
+// the weights is what their time goes into.
 class PaperEngine : public PairEngine {
  public:
   // branch, top: PaperNetwork's layers, which must bring the images down to one cell.
@@ -26,10 +25,12 @@ class PaperEngine : public PairEngine {
   // A layer as a product: the cells it takes of its input, then the product.
   struct Wide {
     ConvolutionTaps taps;
-    std::variant<FixedProduct, PackedProduct> product;  // where floats are asked for, else
+    FixedProduct product;
+
+    // cells [batch, cells, channels] -> [batch, taps.outputs, channels].
+    torch::Tensor Run(const torch::Tensor& cells) const;
   };
   dnnl::memory Fuse(const dnnl::memory& features, std::span<const ImagePair> pairs) const;
-  const dnnl::memory& Product(Wide& layer, const dnnl::memory& cells, std::int64_t batch) const;
 
   std::mutex mutex_;
   dnnl::memory::data_type type_;

@@ -1,5 +1,6 @@
 #include "recollect/cnn/pose_network.h"
 
+#include <ATen/Parallel.h>
 #include <torch/torch.h>
 
 #include <algorithm>
@@ -44,24 +45,34 @@ void CopyWeights(const TensorFile& file, const ModelInfo& info, const std::strin
 
 // Images as the network takes them, each once, and who is paired with whom.
 struct Prepared {
-  std::vector<torch::Tensor> images;
+  torch::Tensor images;  // [images, 3, H, W]
   std::vector<ImagePair> pairs;
 };
 
 Prepared Prepare(const ModelInfo& info, std::span<const CropPair> pairs) {
   Prepared prepared;
+  std::vector<const cv::Mat*> images;
   std::map<std::pair<const void*, std::size_t>, std::int64_t> known;
   const auto number = [&](const cv::Mat& image) {
     RequireCrop(image, info.crop);
-    const auto [found, fresh] = known.try_emplace(
-        {image.data, image.step}, static_cast<std::int64_t>(prepared.images.size()));
-    if (fresh) prepared.images.push_back(PrepareImage(info.network, image));
+    const auto [found, fresh] =
+        known.try_emplace({image.data, image.step}, static_cast<std::int64_t>(images.size()));
+    if (fresh) images.push_back(&image);
     return found->second;
   };
   for (const CropPair& pair : pairs) {
     const std::int64_t live = number(pair.live);
     prepared.pairs.push_back({live, number(pair.key)});
   }
+  const auto count = static_cast<std::int64_t>(images.size());
+  prepared.images = torch::empty({count, 3, info.crop.height, info.crop.width});
+  float* to = prepared.images.data_ptr<float>();
+  const std::int64_t size = prepared.images.numel() / std::max<std::int64_t>(1, count);
+  at::parallel_for(0, count, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      PrepareImage(info.network, *images[static_cast<std::size_t>(i)], to + i * size);
+    }
+  });
   return prepared;
 }
 
@@ -69,8 +80,8 @@ PairAnswers Forward(PairNetwork& network, const Prepared& prepared) {
   const torch::Device device = network.parameters().front().device();
   std::vector<torch::Tensor> live, key;
   for (const ImagePair& pair : prepared.pairs) {
-    live.push_back(prepared.images[static_cast<std::size_t>(pair.live)]);
-    key.push_back(prepared.images[static_cast<std::size_t>(pair.key)]);
+    live.push_back(prepared.images[pair.live]);
+    key.push_back(prepared.images[pair.key]);
   }
   const Prediction said =
       network.forward(torch::stack(live).to(device), torch::stack(key).to(device));
@@ -177,9 +188,8 @@ std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
     const Prepared prepared =
         Prepare(info_, pairs.subspan(from, std::min(kBatch, pairs.size() - from)));
     PairEngine* engine = engine_->Get(*network_, info_.crop);
-    PairAnswers out = engine != nullptr
-                          ? engine->Answer(torch::stack(prepared.images), prepared.pairs)
-                          : Forward(*network_, prepared);
+    PairAnswers out = engine != nullptr ? engine->Answer(prepared.images, prepared.pairs)
+                                        : Forward(*network_, prepared);
     out.motion = out.motion.contiguous();
     if (covariance) out.whitening = out.whitening.contiguous();
     for (std::int64_t i = 0; i < out.motion.size(0); ++i) {

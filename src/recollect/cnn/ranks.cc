@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <torch/csrc/distributed/c10d/PrefixStore.hpp>
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
+#include <torch/csrc/distributed/c10d/ProcessGroupNCCL.hpp>  // nothing where libtorch has none
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
 
 #include "recollect/core/error.h"
@@ -34,6 +36,25 @@ int NumberFrom(const char* variable, int otherwise) {
   return static_cast<int>(number);
 }
 
+using Milliseconds = std::chrono::milliseconds;
+
+// What carries tensors of graphics cards from one to the other; null where libtorch cannot.
+c10::intrusive_ptr<c10d::ProcessGroup> BetweenCards(
+    [[maybe_unused]] const c10::intrusive_ptr<c10d::Store>& store,
+    [[maybe_unused]] const RankOptions& options, [[maybe_unused]] Milliseconds timeout) {
+#ifdef USE_C10D_NCCL
+  if (torch::cuda::is_available()) {
+    setenv("NCCL_BLOCKING_WAIT", "1", 0);  // a lost rank is an error, not an endless wait
+    auto settings = c10d::ProcessGroupNCCL::Options::create();
+    settings->timeout = timeout;
+    return c10::make_intrusive<c10d::ProcessGroupNCCL>(
+        c10::make_intrusive<c10d::PrefixStore>("nccl", store), options.rank, options.ranks,
+        settings);
+  }
+#endif
+  return {};
+}
+
 }  // namespace
 
 RankOptions RankOptionsFromEnvironment() {
@@ -49,14 +70,14 @@ RankOptions RankOptionsFromEnvironment() {
 }
 
 struct Ranks::Group {
-  c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo;
+  c10::intrusive_ptr<c10d::ProcessGroup> gloo, cards;  // the second where libtorch has NCCL
 };
 
 Ranks::Ranks(const RankOptions& options) : options_(options) {
   if (options.ranks == 1) return;
   group_ = std::make_unique<Group>();
   Together(options, [&] {
-    const std::chrono::milliseconds timeout(static_cast<std::int64_t>(options.timeout_s * 1000));
+    const Milliseconds timeout(static_cast<std::int64_t>(options.timeout_s * 1000));
     c10d::TCPStoreOptions meeting;
     meeting.port = static_cast<std::uint16_t>(options.port);
     meeting.isServer = options.rank == 0;
@@ -70,6 +91,7 @@ Ranks::Ranks(const RankOptions& options) : options_(options) {
              : c10d::ProcessGroupGloo::createDefaultDevice());
     group_->gloo =
         c10::make_intrusive<c10d::ProcessGroupGloo>(store, options.rank, options.ranks, settings);
+    group_->cards = BetweenCards(store, options, timeout);
   });
 }
 
@@ -80,7 +102,13 @@ void Ranks::Sum(torch::Tensor values) const {
   const torch::NoGradGuard no_gradients;
   Require(values.is_non_overlapping_and_dense(), "ranks", "values with gaps between them");
   torch::Tensor flat = values.as_strided({values.numel()}, {1});
-  std::vector<at::Tensor> sent = {values.is_cpu() ? flat : flat.cpu()};
+  const auto& cards = group_->cards;
+  if (values.is_cuda() && cards) {
+    std::vector<at::Tensor> sent = {flat};
+    Together(options_, [&] { return cards->allreduce(sent)->wait(); });
+    return;
+  }
+  std::vector<at::Tensor> sent = {flat.cpu()};  // itself where it is the processor's
   Together(options_, [&] { return group_->gloo->allreduce(sent)->wait(); });
   if (!values.is_cpu()) flat.copy_(sent[0]);
 }

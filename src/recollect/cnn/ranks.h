@@ -8,7 +8,8 @@
 
 namespace recollect::cnn {
 
-// The processes that train one network together; c10d's Gloo carries their messages. All must call
+// The processes that train one network together; c10d's Gloo carries their messages, NCCL what lies
+// on graphics cards where libtorch has it (else it goes by way of the processor). All must call
 // the same things in the same order. Everything throws Error where a rank is lost, and the object
 // is of no more use then.
 class Ranks {

@@ -65,7 +65,8 @@ struct TrainOptions {
   double validation_share = 0.1;
 
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: one for each core
+  int threads = 0;     // 0: one for each core
+  std::string device;  // where to train (DeviceNamed); empty: a graphics card where there is one
 
   std::filesystem::path
       start;                   // a model file whose weights training begins with; empty: fresh ones

@@ -12,6 +12,7 @@
 
 #include "recollect/cnn/adam.h"
 #include "recollect/cnn/checkpoint.h"
+#include "recollect/cnn/device.h"
 #include "recollect/cnn/live_curve.h"
 #include "recollect/cnn/loader.h"
 #include "recollect/cnn/pair_network.h"
@@ -105,7 +106,7 @@ class Trainer {
         progress_(progress),
         per_epoch_(Loader::BatchesPerEpoch(data.train, options.batch)),
         total_steps_(per_epoch_ * options.epochs),
-        device_(torch::cuda::is_available() ? torch::kCUDA : torch::kCPU),
+        device_(DeviceNamed(options.device, options.ranks.rank)),
         ranks_(options.ranks) {
     torch::manual_seed(SubSeed(options.seed, 0));
     network_ = MakeNetwork(options.network, data.train.camera, PredictsCovariance());

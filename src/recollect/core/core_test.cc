@@ -6,6 +6,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/core/huge_pages.h"
 #include "recollect/core/instructions.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/random.h"
@@ -32,6 +33,21 @@ TEST(Instructions, KeepsTheTablesThatThisMachineRunsInOrder) {
                            {Instructions::kPlain, &plain},
                            {Instructions::kPlain, &fast}}),
             expected);
+}
+
+TEST(PageVector, KeepsItsValuesAndBeginsWithAPage) {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{5000}, std::size_t{1} << 21}) {
+    PageVector<int> values(count, 7);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(values.data()) % 4096, 0U);
+    values.front() = 1;
+    values.back() = 2;
+    values.resize(2 * count, 3);  // into other pages
+    const PageVector<int> copy = values;
+    EXPECT_EQ(copy.front(), count > 1 ? 1 : 2);
+    EXPECT_EQ(copy[count - 1], 2);
+    EXPECT_EQ(copy[count], 3);
+    EXPECT_EQ(copy.back(), 3);
+  }
 }
 
 TEST(ThreadPool, CoversEveryIndexOnceWithAnyThreadsAndGrain) {
