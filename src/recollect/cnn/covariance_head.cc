@@ -7,7 +7,8 @@ namespace {
 
 constexpr float kRadians = 0.01F, kMetres = 0.3F;  // the size of an error
 constexpr int kHidden = 64;
-constexpr int kNumbers = 21;
+constexpr int kNumbers = 21;  // of a triangular factor
+constexpr int kFits = 3;      // of MotionFit
 constexpr double kBound = 5;  // of the logarithms on the diagonal: e^-5 to e^5 times that size
 
 }  // namespace
@@ -17,7 +18,7 @@ CovarianceHead::CovarianceHead(std::int64_t features)
           "units", torch::tensor({kRadians, kRadians, kRadians, kMetres, kMetres, kMetres}))) {
   const torch::Tensor places = torch::triu_indices(6, 6, 1);
   above_ = register_buffer("above", places[0] * 6 + places[1]);
-  layers_->push_back(torch::nn::Linear(features + kNumbers, kHidden));
+  layers_->push_back(torch::nn::Linear(features + kNumbers + kFits, kHidden));
   layers_->push_back(torch::nn::PReLU());
   torch::nn::Linear last(kHidden, kNumbers);
   torch::nn::init::zeros_(last->weight);
@@ -39,7 +40,9 @@ torch::Tensor CovarianceHead::forward(const torch::Tensor& features, const torch
     const torch::Tensor diagonal = factor.diagonal(0, 1, 2);
     const torch::Tensor rows = (factor / diagonal.unsqueeze(2)).flatten(1).index_select(1, above_);
     const torch::Tensor numbers =
-        torch::cat({diagonal.log(), rows}, 1).clamp(-kBound, kBound).to(features.scalar_type());
+        torch::cat({diagonal.log(), rows, MotionFit(solved, sightings).to(torch::kDouble)}, 1)
+            .clamp(-kBound, kBound)
+            .to(features.scalar_type());
     input = torch::cat({features, numbers}, 1);
   }
   const torch::Tensor raw = layers_->forward(input);

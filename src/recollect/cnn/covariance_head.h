@@ -6,9 +6,10 @@
 
 namespace recollect::cnn {
 
-// How sure a motion is, from the features it was regressed from and from what least squares says
-// (MotionPrecision): two linear layers give the 21 numbers of a triangular factor of the inverse
-// covariance. Nothing flows back into its inputs: the motion is learnt as if it were not there.
+// How sure a motion is, from the features it was regressed from, from what least squares says
+// (MotionPrecision) and how well its sightings agree (MotionFit): two linear layers give the 21
+// numbers of a triangular factor of the inverse covariance. Nothing flows back into its inputs: the
+// motion is learnt as if it were not there.
 class CovarianceHead : public torch::nn::Module {
  public:
   // features: numbers a pair.

@@ -115,6 +115,18 @@ torch::Tensor MotionPrecision(const torch::Tensor& motion, const Sightings& sigh
          (options.sighting_sd * options.sighting_sd);
 }
 
+torch::Tensor MotionFit(const torch::Tensor& motion, const Sightings& sightings,
+                        const SolverOptions& options) {
+  constexpr double kLeast = 1e-6;
+  const Residuals residuals = Evaluate(motion, sightings);
+  const torch::Tensor left = RobustWeight(residuals, options);
+  const torch::Tensor square = residuals.dx.square() + residuals.dy.square();
+  const torch::Tensor weight = sightings.weight.mean(1), kept = left.mean(1);
+  const torch::Tensor spread =
+      (left * square).mean(1) / (kept + kLeast) / (2 * options.sighting_sd * options.sighting_sd);
+  return (torch::stack({weight, kept / (weight + kLeast), spread}, 1) + kLeast).log();
+}
+
 torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& options) {
   const std::int64_t batch = sightings.points.size(0);
   if (!torch::GradMode::is_enabled() && sightings.points.is_cpu() &&

@@ -29,6 +29,12 @@ torch::Tensor SolveMotion(const Sightings& sightings, const SolverOptions& optio
 torch::Tensor MotionPrecision(const torch::Tensor& motion, const Sightings& sightings,
                               const SolverOptions& options = {});
 
+// How well `motion` and the sightings agree, [B, 3], as logarithms: the mean weight; the share of
+// it that is left where weights fall with the residuals; the mean square of the residuals under
+// what is left, in `sighting_sd`. Fog and other days show here.
+torch::Tensor MotionFit(const torch::Tensor& motion, const Sightings& sightings,
+                        const SolverOptions& options = {});
+
 // SE3 layer of delta [B, 6] applied as in SolverStep.
 torch::Tensor Moved(const torch::Tensor& motion, const torch::Tensor& delta);
 
