@@ -10,6 +10,7 @@
 #include "recollect/core/parallel.h"
 #include "recollect/wnn/bit_square.h"
 #include "recollect/wnn/kernel.h"
+#include "recollect/wnn/shrink.h"
 
 namespace recollect::wnn {
 namespace {
@@ -162,14 +163,12 @@ void InvariantEncoder::AddPlane(const cv::Mat& channel, double blur) {
 
 void InvariantEncoder::Look(const cv::Mat& image, Pixel reach) {
   SetMargin(Working({std::abs(reach.x), std::abs(reach.y)}));
-  cv::Mat working = image;
-  if (scale_ < 1) {
-    cv::resize(image, working, {Scaled(image.cols, scale_), Scaled(image.rows, scale_)}, 0, 0,
-               cv::INTER_AREA);
-  }
+  const cv::Size size(Scaled(image.cols, scale_), Scaled(image.rows, scale_));
+  const cv::Mat working =
+      scale_ < 1 ? Shrunk(image, size, height_) : cv::Mat(image.rowRange(0, height_));
   values_.clear();
   rising_.clear();
-  const std::vector<cv::Mat> channels = ChannelsOf(working.rowRange(0, height_), options_.code);
+  const std::vector<cv::Mat> channels = ChannelsOf(working, options_.code);
   for (const cv::Mat& channel : channels) AddPlane(channel, 0);
   double blur = options_.blur_sigma;
   for (int scale = 0; options_.blur && scale < options_.blur_scales; ++scale, blur *= 2) {

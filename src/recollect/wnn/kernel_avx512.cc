@@ -7,6 +7,7 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "recollect/wnn/kernel_common.h"
 
@@ -52,13 +53,21 @@ AVX512 void Turn(const std::uint8_t* packed, const std::int32_t* at, std::ptrdif
   const __m512i across = _mm512_load_si512(kAcross.data());
   const __m512i columns = _mm512_load_si512(kColumns.data());
   const __m512i unit = _mm512_set1_epi64(static_cast<long long>(0x8040201008040201ULL));
-  const __m512i by = _mm512_set1_epi64(moved);
+  const auto word = [&](int i) AVX512 {
+    long long read;
+    std::memcpy(&read, packed + ((at[i] + moved) >> 3), sizeof read);
+    return read;
+  };
+  const __m512i by = _mm512_set1_epi64(moved), seven = _mm512_set1_epi64(7);
   __m512i rows[8], pairs[8], fours[8];
   for (int i = 0; i < 8; ++i) {
-    const __m256i places = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(at + 8 * i));
-    const __m512i bit = _mm512_add_epi64(_mm512_cvtepi32_epi64(places), by);
-    const __m512i read = _mm512_i64gather_epi64(_mm512_srli_epi64(bit, 3), packed, 1);
-    const __m512i eight = _mm512_srlv_epi64(read, _mm512_and_si512(bit, _mm512_set1_epi64(7)));
+    const int r = 8 * i;  // one by one: faster than a gather
+    const __m512i read = _mm512_set_epi64(word(r + 7), word(r + 6), word(r + 5), word(r + 4),
+                                          word(r + 3), word(r + 2), word(r + 1), word(r));
+    const __m512i places =
+        _mm512_cvtepi32_epi64(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(at + r)));
+    const __m512i eight =
+        _mm512_srlv_epi64(read, _mm512_and_si512(_mm512_add_epi64(places, by), seven));
     const __m512i turned =
         _mm512_gf2p8affine_epi64_epi8(unit, _mm512_permutexvar_epi8(across, eight), 0);
     rows[i] = _mm512_permutexvar_epi8(columns, turned);
