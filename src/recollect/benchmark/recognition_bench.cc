@@ -36,8 +36,8 @@ struct Steps {
                               static_cast<std::ptrdiff_t>(image.step)};
     const Stopwatch encoding;
     const wnn::Grids grids(learnt.encoder);
-    if (grids.closer.count() > 1) {
-      learnt.encoder.EncodeDisplaced(view, grids.closer);
+    if (grids.first.count() > 1) {  // up to the search; the closer look reads the rest on its way
+      learnt.encoder.LookDisplaced(view, grids.closer).Every(grids.finer());
     } else {
       learnt.encoder.Encode(view);
     }

@@ -16,7 +16,8 @@ bool Runs(Instructions set) {
     case Instructions::kAvx512:
       return avx512;
     case Instructions::kAvx512Popcount:
-      return avx512 && __builtin_cpu_supports("avx512vpopcntdq");
+      return avx512 && __builtin_cpu_supports("avx512vpopcntdq") &&
+             __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("gfni");
     case Instructions::kAvx512Vnni:
       return avx512 && __builtin_cpu_supports("avx512vnni");
     case Instructions::kNeon:

@@ -8,7 +8,7 @@ namespace recollect {
 // Instruction sets that inner loops are written for. All that such a loop needs of the machine:
 //   kAvx2           AVX2, POPCNT, BMI
 //   kAvx512         AVX-512 F, BW, VL
-//   kAvx512Popcount AVX-512 F, BW, VL, VPOPCNTDQ
+//   kAvx512Popcount AVX-512 F, BW, VL, VPOPCNTDQ, VBMI, GFNI
 //   kAvx512Vnni     AVX-512 F, BW, VL, VNNI
 enum class Instructions { kPlain, kAvx2, kAvx512, kAvx512Popcount, kAvx512Vnni, kNeon };
 

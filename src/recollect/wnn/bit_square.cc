@@ -21,7 +21,8 @@ inline __attribute__((always_inline)) void SwapQuarters(std::uint64_t* words, st
   }
 }
 
-RECOLLECT_VECTORS void TransposeWords(std::uint64_t* words) {
+// Rows of 64 x 64 bits become columns.
+RECOLLECT_VECTORS void Transpose(std::uint64_t* words) {
   SwapQuarters<32>(words, 0x00000000ffffffffULL);
   SwapQuarters<16>(words, 0x0000ffff0000ffffULL);
   SwapQuarters<8>(words, 0x00ff00ff00ff00ffULL);
@@ -31,8 +32,6 @@ RECOLLECT_VECTORS void TransposeWords(std::uint64_t* words) {
 }
 
 }  // namespace
-
-void Transpose(BitSquare& square) { TransposeWords(square.data()); }
 
 void PackBits(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& packed) {
   packed.assign(bytes.size() / 8 + 1 + sizeof(std::uint64_t), 0);
@@ -48,13 +47,16 @@ void PackBits(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& pa
   }
 }
 
-void ReadSquare(const std::uint8_t* packed, const std::int32_t* at, std::ptrdiff_t moved,
-                BitSquare& square) {
+void PlainTurn(const std::uint8_t* packed, const std::int32_t* at, std::ptrdiff_t moved, int count,
+               std::uint64_t* words) {
+  std::uint64_t square[64];
   for (std::size_t r = 0; r < 64; ++r) {
     const auto bit = static_cast<std::size_t>(at[r] + moved);
     std::memcpy(&square[r], packed + bit / 8, sizeof(std::uint64_t));
     square[r] >>= bit % 8;
   }
+  Transpose(square);
+  std::copy_n(square, count, words);
 }
 
 }  // namespace recollect::wnn

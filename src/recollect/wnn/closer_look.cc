@@ -7,6 +7,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
+#include "recollect/wnn/asking.h"
 #include "recollect/wnn/kernel.h"
 
 namespace recollect::wnn {
@@ -17,34 +18,42 @@ constexpr int kGrain = 16;  // neurons that a thread takes at a time
 // own frame. Not a share of them: of a short road, every lap's views of one place are a good part.
 constexpr int kCommon = 16;
 
-NeuronViews ViewsOf(const DisplacedPatterns& live, std::size_t neuron) {
-  return {live.Of(neuron, 0).data(), live.Of(neuron, 1).data(), live.grid.count()};
-}
-
-std::vector<std::vector<std::uint64_t>> PatternsOf(const Memory& memory,
-                                                   std::span<const int> entries) {
-  std::vector<std::vector<std::uint64_t>> patterns;
-  for (const int entry : entries) patterns.push_back(memory.Pattern(entry));
-  return patterns;
-}
-
-// One neuron's words of all patterns, side by side.
-void Gather(const std::vector<std::vector<std::uint64_t>>& patterns, std::size_t neuron,
-            std::vector<std::uint64_t>& words) {
-  for (std::size_t i = 0; i < patterns.size(); ++i) {
-    std::copy_n(&patterns[i][kWords * neuron], kWords, &words[kWords * i]);
+// Some entries' words of one neuron at a time: a block keeps its frames' side by side, so this
+// reads less than whole patterns would.
+class Words {
+ public:
+  Words(const Memory& memory, std::span<const int> entries) : low_(entries.size()), high_(low_) {
+    for (const int entry : entries) entries_.push_back(EntryIn(memory, entry));
   }
-}
+  void Take(std::size_t neuron) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const std::size_t at = neuron * static_cast<std::size_t>(entries_[i].stride);
+      low_[i] = entries_[i].low[at];
+      high_[i] = entries_[i].high[at];
+    }
+  }
+  const std::uint64_t* low() const { return low_.data(); }
+  const std::uint64_t* high() const { return high_.data(); }
+
+ private:
+  std::vector<ScanEntry> entries_;
+  std::vector<std::uint64_t> low_, high_;
+};
 
 constexpr std::size_t kStride = 64;  // votes of a row of displacements, which has fewer
 
 // The displacement of most votes, of equals the first.
 int MostVoted(const std::int16_t* votes, const Displacements& grid) {
-  const auto size = kStride * static_cast<std::size_t>(grid.rows);
-  std::int16_t most = 0;
-  for (std::size_t i = 0; i < size; ++i) most = std::max(most, votes[i]);
-  const auto at = static_cast<int>(std::find(votes, votes + size, most) - votes);
-  return at / int{kStride} * grid.columns + at % int{kStride};
+  std::int16_t most = -1;
+  int best = 0;
+  for (int y = 0; y < grid.rows; ++y, votes += kStride) {
+    std::int16_t most_of_row = 0;
+    for (std::size_t x = 0; x < kStride; ++x) most_of_row = std::max(most_of_row, votes[x]);
+    if (most_of_row <= most) continue;
+    most = most_of_row;
+    best = y * grid.columns + static_cast<int>(std::find(votes, votes + kStride, most) - votes);
+  }
+  return best;
 }
 
 std::int16_t VotesUnder(const std::int16_t* votes, const Displacements& grid, int displacement) {
@@ -102,72 +111,72 @@ std::vector<std::vector<std::size_t>> Sorted(std::span<const int> parts, std::si
 
 std::vector<int> NearDistances(const Memory& memory, const DisplacedPatterns& live,
                                std::span<const int> usual, ThreadPool& pool) {
-  const auto entries = PatternsOf(memory, usual);
   std::vector<int> near(static_cast<std::size_t>(memory.neurons()), -1);
-  if (entries.empty()) return near;
+  if (usual.empty()) return near;
+  const Words entries(memory, usual);
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint64_t> own(kWords * entries.size());
-    std::vector<std::uint64_t> seen(static_cast<std::size_t>(live.grid.count() / 64 + 1));
+    Words own = entries;
+    std::vector<std::uint64_t> least(usual.size());
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      Gather(entries, n, own);
-      std::uint64_t sum = 0, squares = 0;
-      Kernels().front()->add_distances(ViewsOf(live, n), own.data(),
-                                       static_cast<int>(entries.size()), sum, squares);
-      const double count = static_cast<double>(entries.size()) * live.grid.count();
-      const double mean = static_cast<double>(sum) / count;
-      const double variance = static_cast<double>(squares) / count - mean * mean;
+      own.Take(n);
+      Distances all;
+      Kernels().front()->measure(ViewsOf(live.Of(n)), own.low(), own.high(),
+                                 static_cast<int>(usual.size()), all, least.data());
+      const double count = static_cast<double>(usual.size()) * live.grid.count();
+      const double mean = static_cast<double>(all.sum) / count;
+      const double variance = static_cast<double>(all.squares) / count - mean * mean;
       // A neuron to which all entries look alike is of no use below one bit of spread.
       const double limit = mean - kNearDeviations * std::sqrt(std::max(1.0, variance));
       near[n] = std::max(-1, static_cast<int>(std::floor(limit)));
-      int alike = 0;
-      for (std::size_t e = 0; e < entries.size() && near[n] >= 0; ++e) {
-        alike +=
-            Kernels().front()->find_near(ViewsOf(live, n), &own[kWords * e], near[n], seen.data());
-      }
+      const auto alike = std::count_if(least.begin(), least.end(), [&](std::uint64_t distance) {
+        return static_cast<int>(distance) <= near[n];
+      });
       if (alike > kCommon) near[n] = -1;
     }
   });
   return near;
 }
 
-std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live,
+std::vector<Look> LookCloser(const Memory& memory, const DisplacedImage& live,
                              std::span<const int> near, std::span<const int> entries,
                              std::span<const int> parts, ThreadPool& pool) {
-  const auto stored = PatternsOf(memory, entries);
+  const Words stored(memory, entries);
   const auto neurons = Sorted(parts, near.size());
-  const Displacements& grid = live.grid;
+  const Displacements& grid = live.grid();
   const auto size = kStride * static_cast<std::size_t>(grid.rows);  // votes of an entry
   std::vector<Look> looks(entries.size());
   for (Look& look : looks) look.displacements.resize(parts.empty() ? 1 : 1 + neurons.size());
   std::vector<std::int16_t> whole(entries.size() * size, 0);
   std::mutex adding;
   pool.For(static_cast<std::int64_t>(neurons.size()), 1, [&](std::int64_t begin, std::int64_t end) {
-    Voter voter(live.grid);
+    Voter voter(grid);
     std::vector<std::int16_t> votes(whole.size());
-    std::vector<std::uint64_t> own(kWords * entries.size());
+    Words own = stored;
+    std::vector<std::uint64_t> room;
     for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end);
          ++part) {
       std::fill(votes.begin(), votes.end(), std::int16_t{0});
       for (const std::size_t n : neurons[part]) {
         if (near[n] < 0) continue;
-        const NeuronViews views = ViewsOf(live, n);
-        Gather(stored, n, own);
-        for (std::size_t e = 0; e < stored.size(); ++e) {
-          voter.Vote(views, &own[kWords * e], near[n], &votes[e * size]);
+        const NeuronViews views = ViewsOf(live.Of(n, room));
+        own.Take(n);
+        for (std::size_t e = 0; e < entries.size(); ++e) {
+          const std::uint64_t words[kWords] = {own.low()[e], own.high()[e]};
+          voter.Vote(views, words, near[n], &votes[e * size]);
         }
       }
       const std::lock_guard lock(adding);
       for (std::size_t i = 0; i < whole.size(); ++i) {
         whole[i] = static_cast<std::int16_t>(whole[i] + votes[i]);
       }
-      for (std::size_t e = 0; e < stored.size() && !parts.empty(); ++e) {
+      for (std::size_t e = 0; e < entries.size() && !parts.empty(); ++e) {
         const int best = MostVoted(&votes[e * size], grid);
         looks[e].displacements[1 + part] = best;
         looks[e].halves += VotesUnder(&votes[e * size], grid, best);
       }
     }
   });
-  for (std::size_t e = 0; e < stored.size(); ++e) {
+  for (std::size_t e = 0; e < entries.size(); ++e) {
     const int best = MostVoted(&whole[e * size], grid);
     looks[e].displacements[0] = best;
     looks[e].halves += (parts.empty() ? 2 : 1) * VotesUnder(&whole[e * size], grid, best);
@@ -175,17 +184,20 @@ std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live
   return looks;
 }
 
-std::vector<int> HalvesOf(const Memory& memory, const DisplacedPatterns& live,
+std::vector<int> HalvesOf(const Memory& memory, const DisplacedImage& live,
                           std::span<const int> near, int entry, std::span<const int> parts,
                           std::span<const int> displacements) {
   const std::vector<std::uint64_t> stored = memory.Pattern(entry);
-  Voter voter(live.grid);
+  Voter voter(live.grid());
+  std::vector<std::uint64_t> room;
   std::vector<int> halves;
   for (std::size_t n = 0; n < near.size(); ++n) {
-    std::vector<std::int16_t> votes(kStride * static_cast<std::size_t>(live.grid.rows), 0);
-    if (near[n] >= 0) voter.Vote(ViewsOf(live, n), &stored[kWords * n], near[n], votes.data());
+    std::vector<std::int16_t> votes(kStride * static_cast<std::size_t>(live.grid().rows), 0);
+    if (near[n] >= 0) {
+      voter.Vote(ViewsOf(live.Of(n, room)), &stored[kWords * n], near[n], votes.data());
+    }
     const auto under = [&](std::size_t which) {
-      return int{VotesUnder(votes.data(), live.grid, displacements[which])};
+      return int{VotesUnder(votes.data(), live.grid(), displacements[which])};
     };
     halves.push_back(parts.empty() ? 2 * under(0)
                                    : under(0) + under(1 + static_cast<std::size_t>(parts[n])));

@@ -36,12 +36,12 @@ struct Look {
 };
 // By entry of `entries`, its votes under the displacements that give most. parts: as
 // Encoder::parts; empty: none. Throws Error where a row has more than 56 displacements.
-std::vector<Look> LookCloser(const Memory& memory, const DisplacedPatterns& live,
+std::vector<Look> LookCloser(const Memory& memory, const DisplacedImage& live,
                              std::span<const int> near, std::span<const int> entries,
                              std::span<const int> parts, ThreadPool& pool);
 
 // By neuron, how many of an entry's half votes are its own.
-std::vector<int> HalvesOf(const Memory& memory, const DisplacedPatterns& live,
+std::vector<int> HalvesOf(const Memory& memory, const DisplacedImage& live,
                           std::span<const int> near, int entry, std::span<const int> parts,
                           std::span<const int> displacements);
 

@@ -31,11 +31,11 @@ struct Scenes {
   }
   std::vector<Look> LookAt(const cv::Mat& live) {
     const Displacements grid = encoder.closer_displacements();
-    const DisplacedPatterns& patterns = encoder.EncodeDisplaced(View(live), grid);
+    const DisplacedImage image = encoder.LookDisplaced(View(live), grid);
     std::vector<int> all(static_cast<std::size_t>(memory.entries()));
     std::iota(all.begin(), all.end(), 0);
-    const auto near = NearDistances(memory, patterns.Every(4), all, pool);
-    return LookCloser(memory, patterns, near, all, encoder.parts(), pool);
+    const auto near = NearDistances(memory, image.Every(4), all, pool);
+    return LookCloser(memory, image, near, all, encoder.parts(), pool);
   }
   ThreadPool pool;
   NetworkOptions options = RecollectNetwork();

@@ -81,7 +81,7 @@ std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
 }
 
 // Adds the votes of a closer look.
-void LookAgain(const Memory& memory, const DisplacedPatterns& live, const DisplacedPatterns& first,
+void LookAgain(const Memory& memory, const DisplacedImage& live, const DisplacedPatterns& first,
                std::span<const int> parts, ThreadPool& pool, const SearchOptions& search,
                Recollection& recollection) {
   const auto entries = Promising(memory, search.allowed, recollection.histogram);
@@ -116,21 +116,15 @@ DisplacedAnswers AskDisplaced(const Memory& memory, const DisplacedPatterns& liv
                               const SearchOptions& search) {
   const auto neurons = static_cast<std::size_t>(memory.neurons());
   DisplacedAnswers asked{std::vector<Answer>(neurons, kNoAnswer), std::vector<int>(neurons, 0)};
-  std::vector<std::vector<std::uint64_t>> patterns;
-  for (int d = 0; d < live.grid.count(); ++d) patterns.push_back(live.Under(d));
-  CheckPattern(memory, patterns.front());
-  // All of them improve the same answers.
-  const TieBreak ties(search.tie_seed, patterns[patterns.size() / 2]);
-  std::vector<ScanQuery> queries;
-  for (const auto& pattern : patterns) {
-    queries.push_back({pattern.data(), ties, asked.answers.data()});
-  }
+  const std::vector<std::uint64_t> middle = live.Under(live.grid.count() / 2);
+  CheckPattern(memory, middle);
+  const DisplacedQuery query{live.words.data(), live.grid.count(),
+                             TieBreak(search.tie_seed, middle), asked.answers.data()};
   const Kernel& kernel = KernelOf(search);
   const std::vector<ScanBlock> blocks = BlocksOf(memory, search);
   pool.For(memory.neurons(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (const ScanBlock& block : blocks) {
-      kernel.scan_batch(block, queries.data(), live.grid.count(), static_cast<int>(begin),
-                        static_cast<int>(end));
+      kernel.scan_displaced(block, query, static_cast<int>(begin), static_cast<int>(end));
     }
     std::vector<std::uint64_t> near(static_cast<std::size_t>(live.grid.count() / 64 + 1));
     for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
@@ -139,8 +133,7 @@ DisplacedAnswers AskDisplaced(const Memory& memory, const DisplacedPatterns& liv
       const ScanEntry entry = EntryIn(memory, AnswerEntry(answer));
       const std::size_t at = n * static_cast<std::size_t>(entry.stride);
       const std::uint64_t words[kWords] = {entry.low[at], entry.high[at]};
-      kernel.find_near({live.Of(n, 0).data(), live.Of(n, 1).data(), live.grid.count()}, words,
-                       AnswerDistance(answer), near.data());
+      kernel.find_near(ViewsOf(live.Of(n)), words, AnswerDistance(answer), near.data());
       std::size_t word = 0;
       while (near[word] == 0) ++word;
       asked.seen_under[n] = static_cast<int>(64 * word) + std::countr_zero(near[word]);
@@ -185,7 +178,7 @@ Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageV
   const Grids grids(encoder);
   const Displacements& grid = grids.first;
   if (grid.count() == 1) return Recollect(memory, encoder.Encode(image), pool, search);
-  const DisplacedPatterns& live = encoder.EncodeDisplaced(image, grids.closer);
+  const DisplacedImage live = encoder.LookDisplaced(image, grids.closer);
   const DisplacedPatterns first = live.Every(grids.finer());
   Recollection merged =
       MergeDisplaced(memory.entry_labels(), AskDisplaced(memory, first, pool, search), grid);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -48,7 +49,6 @@ struct Encoder::State {
   cv::Mat kept, window, blurred;
   std::optional<Blur> blur;
   std::optional<InvariantEncoder> invariant;  // takes the place of all that, where wanted
-  DisplacedPatterns displaced;
   std::vector<int> parts;
 
   State(const NetworkOptions& o, int width, int height, ThreadPool& p)
@@ -191,31 +191,7 @@ std::vector<std::uint64_t> Encoder::Encode(const ImageView& image, Pixel shift) 
   return pattern;
 }
 
-std::vector<std::uint64_t> DisplacedPatterns::Under(int displacement) const {
-  const auto count = static_cast<std::size_t>(grid.count());
-  std::vector<std::uint64_t> pattern(words.size() / count);
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    pattern[i] = words[i * count + static_cast<std::size_t>(displacement)];
-  }
-  return pattern;
-}
-
-DisplacedPatterns DisplacedPatterns::Every(int steps) const {
-  DisplacedPatterns some;
-  some.grid = {(grid.columns - 1) / steps + 1, (grid.rows - 1) / steps + 1, grid.step * steps};
-  const auto count = static_cast<std::size_t>(grid.count());
-  for (std::size_t row = 0; row < words.size(); row += count) {
-    for (int y = 0; y < grid.rows; y += steps) {
-      for (int x = 0; x < grid.columns; x += steps) {
-        some.words.push_back(words[row + static_cast<std::size_t>(y * grid.columns + x)]);
-      }
-    }
-  }
-  return some;
-}
-
-const DisplacedPatterns& Encoder::EncodeDisplaced(const ImageView& image,
-                                                  const Displacements& grid) {
+DisplacedImage Encoder::LookDisplaced(const ImageView& image, const Displacements& grid) {
   State& state = *state_;
   state.Check(image);
   const double unit = grid.step * image.width / 640.0;
@@ -226,21 +202,28 @@ const DisplacedPatterns& Encoder::EncodeDisplaced(const ImageView& image,
       shifts.push_back({pixels(x - grid.columns / 2), pixels(y - grid.rows / 2)});
     }
   }
-  DisplacedPatterns& displaced = state.displaced;
-  displaced.grid = grid;
-  displaced.words.resize(pattern_words() * shifts.size());
-  if (state.invariant) {
-    state.invariant->Look(State::Whole(image), {pixels(grid.columns / 2), pixels(grid.rows / 2)});
-    state.invariant->EncodeAll(shifts, displaced.words);
-    return displaced;
+  std::optional<InvariantEncoder>& invariant = state.invariant;
+  if (invariant) {
+    invariant->Look(State::Whole(image), {pixels(grid.columns / 2), pixels(grid.rows / 2)});
+    if (invariant->reads_bits()) return {*invariant, grid, invariant->RunsUnder(shifts)};
   }
+  DisplacedPatterns displaced{grid, std::vector<std::uint64_t>(pattern_words() * shifts.size())};
+  std::vector<std::uint64_t> pattern(pattern_words());
   for (std::size_t d = 0; d < shifts.size(); ++d) {
-    const std::vector<std::uint64_t> pattern = Encode(image, shifts[d]);
+    if (invariant) {
+      invariant->Encode(shifts[d], pattern);
+    } else {
+      Encode(image, pattern, shifts[d]);
+    }
     for (std::size_t i = 0; i < pattern.size(); ++i) {
       displaced.words[i * shifts.size() + d] = pattern[i];
     }
   }
-  return displaced;
+  return DisplacedImage(std::move(displaced));
+}
+
+DisplacedPatterns Encoder::EncodeDisplaced(const ImageView& image, const Displacements& grid) {
+  return LookDisplaced(image, grid).Every(1);
 }
 
 }  // namespace recollect::wnn

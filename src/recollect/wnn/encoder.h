@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "recollect/wnn/displaced_patterns.h"
 #include "recollect/wnn/network.h"
 
 namespace recollect {
@@ -20,22 +21,6 @@ struct ImageView {
   int width = 0, height = 0;  // pixels
   int channels = 1;           // 1: gray; 3: blue, green, red
   std::ptrdiff_t stride = 0;  // bytes from one row to the next
-};
-
-// One image's patterns under all displacements of a grid, which are numbered row by row.
-struct DisplacedPatterns {
-  Displacements grid;
-  std::vector<std::uint64_t> words;  // [neuron][word][displacement]
-
-  // A neuron's first or second words, by displacement.
-  std::span<const std::uint64_t> Of(std::size_t neuron, std::size_t word) const {
-    const auto count = static_cast<std::size_t>(grid.count());
-    return std::span(words).subspan((neuron * kWords + word) * count, count);
-  }
-  // Those under every so many-th displacement either way, from the first of a row and column on.
-  DisplacedPatterns Every(int steps) const;
-  // The pattern under one displacement, neurons x kWords words.
-  std::vector<std::uint64_t> Under(int displacement) const;
 };
 
 // Turns images of one size into patterns. Bit i of a neuron is 1 where the value under synapse i
@@ -63,8 +48,9 @@ class Encoder {
   void Encode(const ImageView& image, std::span<std::uint64_t> pattern, Pixel shift = {});
   std::vector<std::uint64_t> Encode(const ImageView& image, Pixel shift = {});
 
-  // The image under all displacements of a grid; valid until the next call.
-  const DisplacedPatterns& EncodeDisplaced(const ImageView& image, const Displacements& grid);
+  // The image under all displacements of a grid. The first is valid until the next call.
+  DisplacedImage LookDisplaced(const ImageView& image, const Displacements& grid);
+  DisplacedPatterns EncodeDisplaced(const ImageView& image, const Displacements& grid);
 
  private:
   struct State;

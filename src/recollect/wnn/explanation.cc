@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "recollect/core/error.h"
 #include "recollect/wnn/closer_look.h"
@@ -38,7 +39,7 @@ std::vector<int> FirstHalves(const Memory& memory, const Grids& grids,
   return halves;
 }
 
-Voters VotersFor(const Memory& memory, const Encoder& encoder, const DisplacedPatterns* live,
+Voters VotersFor(const Memory& memory, const Encoder& encoder, const DisplacedImage* live,
                  const Recollection& recollection, int label) {
   Voters voters;
   voters.label = label;
@@ -79,12 +80,14 @@ Explanation Explain(const Memory& memory, Encoder& encoder, const ImageView& ima
               recollection.seen_under.empty() == (grids.first.count() == 1),
           "explanation", "the recollection is of another network");
   const bool looked = !recollection.second_look.empty();
-  const DisplacedPatterns* live = looked ? &encoder.EncodeDisplaced(image, grids.closer) : nullptr;
+  std::optional<DisplacedImage> live;
+  if (looked) live = encoder.LookDisplaced(image, grids.closer);
   Explanation why;
   why.columns = encoder.synapses().neurons_x();
   why.rows = encoder.synapses().neurons_y();
-  why.winner = VotersFor(memory, encoder, live, recollection, recollection.winner);
-  why.runner_up = VotersFor(memory, encoder, live, recollection, runner_up);
+  why.winner =
+      VotersFor(memory, encoder, live ? &*live : nullptr, recollection, recollection.winner);
+  why.runner_up = VotersFor(memory, encoder, live ? &*live : nullptr, recollection, runner_up);
   return why;
 }
 

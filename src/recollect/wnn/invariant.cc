@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/wnn/bit_square.h"
+#include "recollect/wnn/kernel.h"
+#include "recollect/wnn/shrink.h"
 
 namespace recollect::wnn {
 namespace {
@@ -160,14 +163,12 @@ void InvariantEncoder::AddPlane(const cv::Mat& channel, double blur) {
 
 void InvariantEncoder::Look(const cv::Mat& image, Pixel reach) {
   SetMargin(Working({std::abs(reach.x), std::abs(reach.y)}));
-  cv::Mat working = image;
-  if (scale_ < 1) {
-    cv::resize(image, working, {Scaled(image.cols, scale_), Scaled(image.rows, scale_)}, 0, 0,
-               cv::INTER_AREA);
-  }
+  const cv::Size size(Scaled(image.cols, scale_), Scaled(image.rows, scale_));
+  const cv::Mat working =
+      scale_ < 1 ? Shrunk(image, size, height_) : cv::Mat(image.rowRange(0, height_));
   values_.clear();
   rising_.clear();
-  const std::vector<cv::Mat> channels = ChannelsOf(working.rowRange(0, height_), options_.code);
+  const std::vector<cv::Mat> channels = ChannelsOf(working, options_.code);
   for (const cv::Mat& channel : channels) AddPlane(channel, 0);
   double blur = options_.blur_sigma;
   for (int scale = 0; options_.blur && scale < options_.blur_scales; ++scale, blur *= 2) {
@@ -183,49 +184,45 @@ std::ptrdiff_t InvariantEncoder::Moved(Pixel shift) const {
   return std::ptrdiff_t{by.y} * (width_ + 2 * margin_.x) + by.x;
 }
 
-// Bits of neighbouring pixels lie side by side, so one read of a word tells what a synapse sees
-// under many shifts; turning a square of bits around makes them patterns.
-void InvariantEncoder::GatherAll(std::span<const std::ptrdiff_t> moved,
-                                 std::span<std::uint64_t> patterns) const {
-  const std::size_t shifts = moved.size();
-  std::vector<std::size_t> begins;  // of runs of shifts that one read takes in
-  for (std::size_t i = 0; i < shifts; ++i) {
-    const bool within = !begins.empty() && moved[i] >= moved[begins.back()] &&
-                        moved[i] - moved[begins.back()] < kReach;
-    if (!within) begins.push_back(i);
-  }
-  begins.push_back(shifts);
-  const auto neurons = static_cast<std::int64_t>(offsets_.size()) / kSynapses;
-  pool_.For(neurons, 16, [&](std::int64_t from, std::int64_t to) {
-    BitSquare square;
-    for (auto row = static_cast<std::size_t>(from * kWords);
-         row < static_cast<std::size_t>(to * kWords); ++row) {
-      const std::int32_t* at = offsets_.data() + row * 64;
-      std::uint64_t* words = patterns.data() + row * shifts;
-      for (std::size_t run = 0; run + 1 < begins.size(); ++run) {
-        const std::ptrdiff_t first = moved[begins[run]];
-        ReadSquare(packed_.data(), at, first, square);
-        Transpose(square);
-        for (std::size_t i = begins[run]; i < begins[run + 1]; ++i) {
-          words[i] = square[static_cast<std::size_t>(moved[i] - first)];
-        }
-      }
-    }
-  });
+BitRuns InvariantEncoder::RunsUnder(std::span<const Pixel> shifts) const {
+  std::vector<std::ptrdiff_t> moved;
+  for (const Pixel shift : shifts) moved.push_back(Moved(shift));
+  return RunsOf(std::move(moved));
 }
 
-void InvariantEncoder::EncodeAll(std::span<const Pixel> shifts,
-                                 std::span<std::uint64_t> patterns) const {
-  if (options_.cells == Cells::kGradient) {
-    std::vector<std::ptrdiff_t> moved;
-    for (const Pixel shift : shifts) moved.push_back(Moved(shift));
-    return GatherAll(moved, patterns);
+// Bits of neighbouring pixels lie side by side, so one read of a word tells what a synapse sees
+// under many shifts; turning a square of bits around makes them patterns.
+void InvariantEncoder::Read(const BitRuns& runs, std::size_t neuron,
+                            std::span<std::uint64_t> words) const {
+  const std::size_t shifts = runs.moved.size();
+  const auto turn = Kernels().front()->turn;
+  for (std::size_t w = 0; w < kWords; ++w) {
+    const std::int32_t* at = offsets_.data() + neuron * kSynapses + 64 * w;
+    std::uint64_t* row = words.data() + w * shifts;
+    for (const BitRuns::Run& run : runs.runs) {
+      if (run.reach == run.end - run.begin) {
+        turn(packed_.data(), at, run.moved, run.reach, row + run.begin);
+        continue;
+      }
+      std::uint64_t columns[kReach];
+      turn(packed_.data(), at, run.moved, run.reach, columns);
+      for (auto i = static_cast<std::size_t>(run.begin); i < static_cast<std::size_t>(run.end);
+           ++i) {
+        row[i] = columns[runs.moved[i] - run.moved];
+      }
+    }
   }
-  std::vector<std::uint64_t> pattern(patterns.size() / shifts.size());
-  for (std::size_t d = 0; d < shifts.size(); ++d) {
-    Encode(shifts[d], pattern);
-    for (std::size_t i = 0; i < pattern.size(); ++i) patterns[i * shifts.size() + d] = pattern[i];
-  }
+}
+
+std::vector<std::uint64_t> InvariantEncoder::ReadAll(const BitRuns& runs) const {
+  const std::size_t count = kWords * runs.moved.size(), neurons = offsets_.size() / kSynapses;
+  std::vector<std::uint64_t> words(neurons * count);
+  pool_.For(static_cast<std::int64_t>(neurons), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      Read(runs, n, std::span(words).subspan(n * count, count));
+    }
+  });
+  return words;
 }
 
 void InvariantEncoder::Encode(Pixel shift, std::span<std::uint64_t> pattern) const {

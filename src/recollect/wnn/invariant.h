@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "recollect/wnn/displaced_patterns.h"
 #include "recollect/wnn/network.h"
 
 namespace recollect {
@@ -30,14 +31,19 @@ class InvariantEncoder {
   // The pattern of that image displaced by `shift`, pixels of the image as it was given; its
   // border is repeated where that leaves it. Writes neurons x kWords words.
   void Encode(Pixel shift, std::span<std::uint64_t> pattern) const;
-  // The same under many shifts, ordered by y, then by x. Writes [neuron][word][shift].
-  void EncodeAll(std::span<const Pixel> shifts, std::span<std::uint64_t> patterns) const;
+  // Whether Read takes the place of Encode: cells are bits of one picture, which are read under
+  // many shifts at a time.
+  bool reads_bits() const { return options_.cells == Cells::kGradient; }
+  // Where it looks under shifts, best ordered by y, then by x.
+  BitRuns RunsUnder(std::span<const Pixel> shifts) const;
+  // One neuron's patterns, [word][shift], or those of all, [neuron][word][shift].
+  void Read(const BitRuns& runs, std::size_t neuron, std::span<std::uint64_t> words) const;
+  std::vector<std::uint64_t> ReadAll(const BitRuns& runs) const;
 
  private:
   Pixel Working(Pixel shift) const;
   std::ptrdiff_t Moved(Pixel shift) const;  // in a plane, by a shift of the image
   void SetMargin(Pixel margin);
-  void GatherAll(std::span<const std::ptrdiff_t> moved, std::span<std::uint64_t> patterns) const;
   void AddPlane(const cv::Mat& channel, double blur);
   void AddGradients(const cv::Mat& padded);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -131,6 +132,19 @@ TEST(Invariant, RowsOfDisplacementsAreTheSameAsEachAlone) {
                           pixels(d / grid.columns - grid.rows / 2)};
         ASSERT_EQ(patterns.Under(d), encoder.Encode(View(scene), shift)) << width << " " << d;
       }
+      // Some of them, and one neuron's at a time.
+      const DisplacedImage image = encoder.LookDisplaced(View(scene), grid);
+      const DisplacedPatterns some = image.Every(4);
+      ASSERT_EQ(some.grid.columns, grid.columns / 4 + 1);
+      ASSERT_EQ(some.grid.rows, 3);
+      for (int d = 0; d < some.grid.count(); ++d) {
+        const int x = 4 * (d % some.grid.columns), y = 4 * (d / some.grid.columns);
+        ASSERT_EQ(some.Under(d), patterns.Under(y * grid.columns + x)) << width << " " << d;
+      }
+      std::vector<std::uint64_t> room;
+      for (std::size_t n = 0; n < 24; ++n) {
+        ASSERT_TRUE(std::ranges::equal(image.Of(n, room), patterns.Of(n))) << width << " " << n;
+      }
     }
   }
 }
@@ -157,8 +171,8 @@ TEST(Invariant, NeuronsKeepTheirNearestEntryUnderAnyDisplacement) {
         const auto stored = memory.Pattern(entry);
         for (int d = 0; d < 45; ++d) {
           const auto at = static_cast<std::size_t>(d);
-          const int distance = std::popcount(live.Of(n, 0)[at] ^ stored[2 * n]) +
-                               std::popcount(live.Of(n, 1)[at] ^ stored[2 * n + 1]);
+          const int distance = std::popcount(live.Of(n)[at] ^ stored[2 * n]) +
+                               std::popcount(live.Of(n)[45 + at] ^ stored[2 * n + 1]);
           least = std::min(least, distance);
           if (entry != AnswerEntry(asked.answers[n]) || distance >= of_answer) continue;
           of_answer = distance;

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "recollect/wnn/bit_square.h"
 #include "recollect/wnn/kernel_common.h"
 
 #define AVX2 __attribute__((target("avx2,popcnt,bmi")))
@@ -170,13 +171,17 @@ AVX2 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int lim
   return FindNearOf(views, entry, limit, near);
 }
 
-AVX2 void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                       std::uint64_t& sum, std::uint64_t& squares) {
-  AddDistancesOf(views, entries, count, sum, squares);
+AVX2 void Measure(const NeuronViews& views, const std::uint64_t* low, const std::uint64_t* high,
+                  int count, Distances& all, std::uint64_t* least) {
+  MeasureOf(views, low, high, count, all, least);
 }
 
-constexpr Kernel kKernel = {"avx2", Cells,     BlurColumns, BlurRow,      Probe,
-                            Scan,   ScanBatch, FindNear,    AddDistances, PlainAddVotes};
+AVX2 void ScanDisplaced(const ScanBlock& block, const DisplacedQuery& query, int begin, int end) {
+  ScanDisplacedOf(block, query, begin, end);
+}
+
+constexpr Kernel kKernel = {"avx2", PlainTurn, Cells,         BlurColumns, BlurRow, Probe,
+                            Scan,   ScanBatch, ScanDisplaced, FindNear,    Measure, PlainAddVotes};
 
 }  // namespace
 

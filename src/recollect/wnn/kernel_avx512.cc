@@ -5,11 +5,14 @@
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #include <immintrin.h>
 
+#include <array>
 #include <bit>
+#include <cstring>
 
 #include "recollect/wnn/kernel_common.h"
 
-#define AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,avx512vpopcntdq,popcnt,bmi")))
+#define AVX512 \
+  __attribute__((target("avx512f,avx512bw,avx512vl,avx512vpopcntdq,avx512vbmi,gfni,popcnt,bmi")))
 
 namespace recollect::wnn {
 namespace {
@@ -18,11 +21,76 @@ constexpr int kLane = 8;  // frames a register
 
 AVX512 inline __m512i Load(const std::uint64_t* words) { return _mm512_loadu_si512(words); }
 
+AVX512 inline __m512i Same(std::uint64_t word) {
+  return _mm512_set1_epi64(static_cast<long long>(word));
+}
+
 AVX512 inline __m512i Different(__m512i words, __m512i query) {
   return _mm512_popcnt_epi64(_mm512_xor_si512(words, query));
 }
 
 AVX512 inline __m512i Limit(Answer best) { return _mm512_set1_epi64(AnswerDistance(best)); }
+
+// Squares of 8 x 8 bits, eight a register: rows become columns of bytes, bytes are turned bit by
+// bit, and unpacking puts the eight registers' bytes side by side.
+AVX512 void Turn(const std::uint8_t* packed, const std::int32_t* at, std::ptrdiff_t moved,
+                 int count, std::uint64_t* words) {
+  // Byte b of row r goes to row b, byte 7 - r: the matrices of gf2p8affineqb are upside down.
+  alignas(64) static constexpr auto kAcross = [] {
+    std::array<std::uint8_t, 64> from{};
+    for (std::size_t i = 0; i < 64; ++i)
+      from[i] = static_cast<std::uint8_t>(8 * (7 - i % 8) + i / 8);
+    return from;
+  }();
+  // Of 64 columns, those that unpacking brings to the places of the first 64 words.
+  alignas(64) static constexpr auto kColumns = [] {
+    std::array<std::uint8_t, 64> from{};
+    for (std::size_t i = 0; i < 64; ++i) {
+      from[i] = static_cast<std::uint8_t>(8 * (i % 16 / 2) + 2 * (i / 16) + i % 2);
+    }
+    return from;
+  }();
+  const __m512i across = _mm512_load_si512(kAcross.data());
+  const __m512i columns = _mm512_load_si512(kColumns.data());
+  const __m512i unit = _mm512_set1_epi64(static_cast<long long>(0x8040201008040201ULL));
+  const auto word = [&](int i) AVX512 {
+    long long read;
+    std::memcpy(&read, packed + ((at[i] + moved) >> 3), sizeof read);
+    return read;
+  };
+  const __m512i by = _mm512_set1_epi64(moved), seven = _mm512_set1_epi64(7);
+  __m512i rows[8], pairs[8], fours[8];
+  for (int i = 0; i < 8; ++i) {
+    const int r = 8 * i;  // one by one: faster than a gather
+    const __m512i read = _mm512_set_epi64(word(r + 7), word(r + 6), word(r + 5), word(r + 4),
+                                          word(r + 3), word(r + 2), word(r + 1), word(r));
+    const __m512i places =
+        _mm512_cvtepi32_epi64(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(at + r)));
+    const __m512i eight =
+        _mm512_srlv_epi64(read, _mm512_and_si512(_mm512_add_epi64(places, by), seven));
+    const __m512i turned =
+        _mm512_gf2p8affine_epi64_epi8(unit, _mm512_permutexvar_epi8(across, eight), 0);
+    rows[i] = _mm512_permutexvar_epi8(columns, turned);
+  }
+  for (int i = 0; i < 4; ++i) {
+    pairs[i] = _mm512_unpacklo_epi8(rows[2 * i], rows[2 * i + 1]);
+    pairs[4 + i] = _mm512_unpackhi_epi8(rows[2 * i], rows[2 * i + 1]);
+  }
+  for (int i = 0; i < 8; i += 4) {
+    for (int j = 0; j < 2; ++j) {
+      fours[i + j] = _mm512_unpacklo_epi16(pairs[i + 2 * j], pairs[i + 2 * j + 1]);
+      fours[i + 2 + j] = _mm512_unpackhi_epi16(pairs[i + 2 * j], pairs[i + 2 * j + 1]);
+    }
+  }
+  for (int i = 0; i < 8 && 8 * i < count; ++i) {
+    const __m512i low = fours[i / 2 * 2], high = fours[i / 2 * 2 + 1];
+    const __m512i eight =
+        i % 2 ? _mm512_unpackhi_epi32(low, high) : _mm512_unpacklo_epi32(low, high);
+    const int left = count - 8 * i;
+    _mm512_mask_storeu_epi64(words + 8 * i,
+                             static_cast<__mmask8>(left >= 8 ? 0xff : (1 << left) - 1), eight);
+  }
+}
 
 AVX512 void Cells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,
                   std::uint64_t* pattern) {
@@ -146,6 +214,42 @@ AVX512 void ScanBatch(const ScanBlock& block, const ScanQuery* queries, int coun
   }
 }
 
+// Half a block's row stays in registers while all displacements pass over it.
+AVX512 void ScanDisplaced(const ScanBlock& block, const DisplacedQuery& query, int begin, int end) {
+  constexpr int kLanes = 4, kFrames = kLanes * kLane;
+  for (int n = begin; n < end; ++n) {
+    const NeuronViews views = query.Of(n);
+    const std::uint64_t* low = block.low + std::ptrdiff_t{n} * block.capacity;
+    const std::uint64_t* high = block.high + std::ptrdiff_t{n} * block.capacity;
+    Answer best = query.answers[n];
+    for (int first = 0; first < 64 && block.allowed >> first != 0; first += kFrames) {
+      __m512i lows[kLanes], highs[kLanes], least[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int frame = first + kLane * lane;
+        const auto there = static_cast<__mmask8>(frame < block.capacity ? 0xff : 0);
+        lows[lane] = _mm512_maskz_loadu_epi64(there, low + frame);
+        highs[lane] = _mm512_maskz_loadu_epi64(there, high + frame);
+        least[lane] = _mm512_set1_epi64(kSynapses);
+      }
+      for (int d = 0; d < views.count; ++d) {
+        const __m512i q0 = Same(views.low[d]), q1 = Same(views.high[d]);
+        for (int lane = 0; lane < kLanes; ++lane) {
+          least[lane] = _mm512_min_epu32(
+              least[lane], _mm512_add_epi64(Different(lows[lane], q0), Different(highs[lane], q1)));
+        }
+      }
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int frame = first + kLane * lane;
+        const auto allowed = static_cast<__mmask8>(block.allowed >> frame);
+        const __mmask8 hits = _mm512_mask_cmple_epu64_mask(allowed, least[lane], Limit(best));
+        if (hits == 0) continue;
+        best = TakeHits(hits, least[lane], query.ties, n, block.first_entry + frame, best);
+      }
+    }
+    query.answers[n] = best;
+  }
+}
+
 AVX512 void BlurColumns(const BlurTaps& taps, const std::uint8_t* const* rows, int count,
                         std::int16_t* sums) {
   constexpr int kLanes = 32, kParts = 2, kStep = kParts * kLanes;
@@ -239,23 +343,27 @@ AVX512 bool FindNear(const NeuronViews& views, const std::uint64_t* entry, int l
   return (any | bits) != 0;
 }
 
-AVX512 void AddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                         std::uint64_t& sum, std::uint64_t& squares) {
-  __m512i sums = _mm512_setzero_si512(), all_squares = _mm512_setzero_si512();
-  for (int d = 0; d < views.count; d += kLane) {
-    const int left = views.count - d;
-    const auto mask = static_cast<__mmask8>(left >= kLane ? 0xff : (1 << left) - 1);
-    for (int e = 0; e < count; ++e) {
-      const __m512i words[2] = {_mm512_set1_epi64(static_cast<long long>(entries[2 * e])),
-                                _mm512_set1_epi64(static_cast<long long>(entries[2 * e + 1]))};
-      const __m512i distances = DistancesUnder(views, d, mask, words);
+AVX512 void Measure(const NeuronViews& views, const std::uint64_t* low, const std::uint64_t* high,
+                    int count, Distances& all, std::uint64_t* least) {
+  const NeuronViews own = views;
+  __m512i sums = _mm512_setzero_si512(), squares = sums;
+  for (int e = 0; e < count; e += kLane) {
+    const auto mask = static_cast<__mmask8>(count - e >= kLane ? 0xff : (1 << (count - e)) - 1);
+    const __m512i lows = _mm512_maskz_loadu_epi64(mask, low + e);
+    const __m512i highs = _mm512_maskz_loadu_epi64(mask, high + e);
+    __m512i nearest = _mm512_set1_epi64(-1);
+    for (int d = 0; d < own.count; ++d) {
+      const __m512i distances =
+          _mm512_add_epi64(Different(lows, Same(own.low[d])), Different(highs, Same(own.high[d])));
+      nearest = _mm512_min_epu32(nearest, distances);
       sums = _mm512_mask_add_epi64(sums, mask, sums, distances);
-      all_squares = _mm512_mask_add_epi64(all_squares, mask, all_squares,
-                                          _mm512_mul_epu32(distances, distances));
+      squares =
+          _mm512_mask_add_epi64(squares, mask, squares, _mm512_mul_epu32(distances, distances));
     }
+    _mm512_mask_storeu_epi64(least + e, mask, nearest);
   }
-  sum += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
-  squares += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(all_squares));
+  all.sum += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
+  all.squares += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(squares));
 }
 
 AVX512 void AddVotes(const std::uint64_t* rows, int count, std::int16_t* votes) {
@@ -269,8 +377,8 @@ AVX512 void AddVotes(const std::uint64_t* rows, int count, std::int16_t* votes) 
   }
 }
 
-constexpr Kernel kKernel = {"avx512", Cells,     BlurColumns, BlurRow,      Probe,
-                            Scan,     ScanBatch, FindNear,    AddDistances, AddVotes};
+constexpr Kernel kKernel = {"avx512", Turn,      Cells,         BlurColumns, BlurRow, Probe,
+                            Scan,     ScanBatch, ScanDisplaced, FindNear,    Measure, AddVotes};
 
 }  // namespace
 

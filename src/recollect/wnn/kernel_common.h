@@ -49,14 +49,39 @@ inline Answer Better(Answer best, const TieBreak& ties, int neuron, int distance
   return any != 0;
 }
 
-[[gnu::always_inline]] inline void AddDistancesOf(const NeuronViews& views,
-                                                  const std::uint64_t* entries, int count,
-                                                  std::uint64_t& sum, std::uint64_t& squares) {
+[[gnu::always_inline]] inline void MeasureOf(const NeuronViews& views, const std::uint64_t* low,
+                                             const std::uint64_t* high, int count, Distances& all,
+                                             std::uint64_t* least) {
   for (int e = 0; e < count; ++e) {
+    const std::uint64_t entry[kWords] = {low[e], high[e]};
+    least[e] = ~std::uint64_t{0};
     for (int d = 0; d < views.count; ++d) {
-      const auto distance = static_cast<std::uint64_t>(DistanceUnder(views, d, entries + 2 * e));
-      sum += distance;
-      squares += distance * distance;
+      const auto distance = static_cast<std::uint64_t>(DistanceUnder(views, d, entry));
+      all.sum += distance;
+      all.squares += distance * distance;
+      least[e] = distance < least[e] ? distance : least[e];
+    }
+  }
+}
+
+// Kernel::scan_displaced.
+[[gnu::always_inline]] inline void ScanDisplacedOf(const ScanBlock& block,
+                                                   const DisplacedQuery& query, int begin,
+                                                   int end) {
+  for (int n = begin; n < end; ++n) {
+    const NeuronViews views = query.Of(n);
+    const std::ptrdiff_t at = std::ptrdiff_t{n} * block.capacity;
+    for (std::uint64_t left = block.allowed; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      const std::uint64_t entry[kWords] = {block.low[at + i], block.high[at + i]};
+      int least = kSynapses;
+      for (int d = 0; d < views.count; ++d) {
+        const int distance = DistanceUnder(views, d, entry);
+        least = distance < least ? distance : least;
+      }
+      Answer& best = query.answers[n];
+      if (least > AnswerDistance(best)) continue;
+      best = Better(best, query.ties, n, least, block.first_entry + i);
     }
   }
 }
@@ -69,11 +94,12 @@ inline void PlainAddVotes(const std::uint64_t* rows, int count, std::int16_t* vo
   }
 }
 
-// Kernel::find_near and add_distances in plain C++.
+// Kernel::scan_displaced, find_near and measure in plain C++.
+void PlainScanDisplaced(const ScanBlock& block, const DisplacedQuery& query, int begin, int end);
 bool PlainFindNear(const NeuronViews& views, const std::uint64_t* entry, int limit,
                    std::uint64_t* near);
-void PlainAddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                       std::uint64_t& sum, std::uint64_t& squares);
+void PlainMeasure(const NeuronViews& views, const std::uint64_t* low, const std::uint64_t* high,
+                  int count, Distances& all, std::uint64_t* least);
 
 // Kernel::cells in plain C++.
 void PlainCells(const std::int32_t* values, const std::int32_t* offsets, int begin, int end,

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "recollect/wnn/bit_square.h"
 #include "recollect/wnn/kernel_common.h"
 
 namespace recollect::wnn {
@@ -73,8 +74,9 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
   ProbeEntry(entry, query, begin, end);
 }
 
-constexpr Kernel kKernel = {"neon", PlainCells, BlurColumns,   PlainBlurRow,      Probe,
-                            Scan,   ScanBatch,  PlainFindNear, PlainAddDistances, PlainAddVotes};
+constexpr Kernel kKernel = {
+    "neon", PlainTurn, PlainCells,         BlurColumns,   PlainBlurRow, Probe,
+    Scan,   ScanBatch, PlainScanDisplaced, PlainFindNear, PlainMeasure, PlainAddVotes};
 
 }  // namespace
 

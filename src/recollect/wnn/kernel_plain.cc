@@ -1,6 +1,7 @@
 // The search in plain C++: what the other kernels are tested against.
 #include <bit>
 
+#include "recollect/wnn/bit_square.h"
 #include "recollect/wnn/kernel_common.h"
 
 namespace recollect::wnn {
@@ -45,9 +46,13 @@ bool PlainFindNear(const NeuronViews& views, const std::uint64_t* entry, int lim
   return FindNearOf(views, entry, limit, near);
 }
 
-void PlainAddDistances(const NeuronViews& views, const std::uint64_t* entries, int count,
-                       std::uint64_t& sum, std::uint64_t& squares) {
-  AddDistancesOf(views, entries, count, sum, squares);
+void PlainMeasure(const NeuronViews& views, const std::uint64_t* low, const std::uint64_t* high,
+                  int count, Distances& all, std::uint64_t* least) {
+  MeasureOf(views, low, high, count, all, least);
+}
+
+void PlainScanDisplaced(const ScanBlock& block, const DisplacedQuery& query, int begin, int end) {
+  ScanDisplacedOf(block, query, begin, end);
 }
 
 namespace {
@@ -89,7 +94,8 @@ void Probe(const ScanEntry& entry, const ScanQuery& query, int begin, int end) {
 
 }  // namespace
 
-const Kernel kPlainKernel = {"plain", PlainCells, BlurColumns,   PlainBlurRow,      Probe,
-                             Scan,    ScanBatch,  PlainFindNear, PlainAddDistances, PlainAddVotes};
+const Kernel kPlainKernel = {
+    "plain", PlainTurn, PlainCells,         BlurColumns,   PlainBlurRow, Probe,
+    Scan,    ScanBatch, PlainScanDisplaced, PlainFindNear, PlainMeasure, PlainAddVotes};
 
 }  // namespace recollect::wnn

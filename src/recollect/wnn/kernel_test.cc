@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "recollect/wnn/bit_square.h"
 #include "recollect/wnn/test_patterns.h"
 
 namespace recollect::wnn {
@@ -165,24 +166,124 @@ TEST(Kernel, CloserLooksAgreeWithThePlainOnes) {
     for (int count = 1; count <= 140; ++count) {
       const auto seed = static_cast<std::uint64_t>(count);
       const Words words = Fill(2 * static_cast<std::size_t>(count), content, seed);
-      const Words entries = Fill(3 * kWords, content, ~seed);
+      const Words entries = Fill(kWords, content, ~seed);
       const NeuronViews views{words.data(), words.data() + count, count};
       const auto look = [&](const Kernel& kernel, int limit) {
         Words near(static_cast<std::size_t>(count + 63) / 64 + 1, 7);
         const bool any = kernel.find_near(views, entries.data(), limit, near.data());
-        std::uint64_t sum = 5, squares = 6;
-        kernel.add_distances(views, entries.data(), 3, sum, squares);
-        return std::tuple(near, any, sum, squares);
+        return std::tuple(near, any);
       };
       for (const Kernel* kernel : Kernels()) {
         for (const int limit : {0, 1, 2, 60, 64, 128}) {
           ASSERT_EQ(look(*kernel, limit), look(kPlainKernel, limit)) << kernel->name;
         }
       }
-      const auto [near, any, sum, squares] = look(kPlainKernel, 128);
+      const auto [near, any] = look(kPlainKernel, 128);
       EXPECT_EQ(near.back(), 7U);
       EXPECT_EQ(std::popcount(near.front()), std::min(count, 64));
       EXPECT_FALSE(std::get<1>(look(kPlainKernel, -1)));
+    }
+  }
+}
+
+TEST(Kernel, DisplacedScansAreScansUnderEachDisplacement) {
+  constexpr int kNeurons = 5;
+  for (const Content content : {Content::kRandom, Content::kFewBits, Content::kNearQuery}) {
+    for (const int capacity : {8, 16, 24, 56, 64}) {
+      for (int count = 1; count <= 46; count += 5) {
+        const auto seed = static_cast<std::uint64_t>(100 * capacity + count);
+        const Words block_words =
+            Fill(std::size_t{2} * kNeurons * static_cast<std::size_t>(capacity), content, seed);
+        const Words live =
+            Fill(kWords * kNeurons * static_cast<std::size_t>(count), content, ~seed);
+        const std::uint64_t* low = block_words.data();
+        const TieBreak ties(seed, live);
+        const std::uint64_t all = ~std::uint64_t{0} >> (64 - capacity);
+        for (const std::uint64_t allowed : {all, all & Scramble(seed), all >> (capacity / 2 + 1)}) {
+          const ScanBlock block{low, low + kNeurons * capacity, capacity, 300, allowed};
+          std::vector<Answer> expected(kNeurons, kNoAnswer);
+          for (int d = 0; d < count; ++d) {
+            Words pattern;
+            for (std::size_t i = 0; i < kWords * kNeurons; ++i) {
+              pattern.push_back(
+                  live[i * static_cast<std::size_t>(count) + static_cast<std::size_t>(d)]);
+            }
+            kPlainKernel.scan(block, {pattern.data(), ties, expected.data()}, 1, kNeurons);
+          }
+          for (const Kernel* kernel : Kernels()) {
+            std::vector<Answer> answers(kNeurons, kNoAnswer);
+            const DisplacedQuery query{live.data(), count, ties, answers.data()};
+            kernel->scan_displaced(block, query, 1, kNeurons);
+            ASSERT_EQ(answers, expected) << kernel->name << " " << capacity << " " << count;
+            kernel->scan_displaced(block, query, 1, kNeurons);
+            ASSERT_EQ(answers, expected) << kernel->name << ", twice";
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Kernel, MeasuresAgreeWithThePlainOnes) {
+  for (const Content content : {Content::kRandom, Content::kFewBits, Content::kExtremes}) {
+    for (int count = 1; count <= 70; ++count) {
+      const auto seed = static_cast<std::uint64_t>(count), size = seed;
+      const int displacements = 1 + 7 * count % 46;
+      const Words words = Fill(2 * static_cast<std::size_t>(displacements), content, seed);
+      const Words low = Fill(size, content, ~seed), high = Fill(size, content, 3 * seed);
+      const auto measure = [&](const Kernel& kernel) {
+        Distances all{5, 6};
+        Words least(size + 1, 7);
+        kernel.measure(ViewsOf(words), low.data(), high.data(), count, all, least.data());
+        return std::tuple(all.sum, all.squares, least);
+      };
+      for (const Kernel* kernel : Kernels()) {
+        ASSERT_EQ(measure(*kernel), measure(kPlainKernel)) << kernel->name << " " << count;
+      }
+      const auto [sum, squares, least] = measure(kPlainKernel);
+      std::uint64_t expected = 5, nearest = 128;
+      for (std::size_t e = 0; e < size; ++e) {
+        for (std::size_t d = 0; d < words.size() / 2; ++d) {
+          const auto distance =
+              static_cast<std::uint64_t>(std::popcount(words[d] ^ low[e]) +
+                                         std::popcount(words[words.size() / 2 + d] ^ high[e]));
+          expected += distance;
+          if (e == 0) nearest = std::min(nearest, distance);
+        }
+      }
+      EXPECT_EQ(sum, expected);
+      EXPECT_EQ(least.front(), nearest);
+      EXPECT_EQ(least.back(), 7U);
+    }
+  }
+}
+
+TEST(Kernel, BitsAreTurned) {
+  const Words picture = Fill(64, Content::kRandom, 9);
+  std::vector<std::uint8_t> bits, packed;
+  for (std::size_t i = 0; i < 64 * 64; ++i) bits.push_back(picture[i / 64] >> (i % 64) & 1);
+  PackBits(bits, packed);
+  for (int count = 1; count <= kReach; ++count) {
+    const auto seed = static_cast<std::uint64_t>(count);
+    std::vector<std::int32_t> at;
+    for (std::uint64_t r = 0; r < 64; ++r) {
+      at.push_back(200 + static_cast<std::int32_t>(SubSeed(seed, r) % 3600));
+    }
+    at[7] = 200, at[8] = 4096 - count - 200;  // the first and the last that is read
+    for (const std::ptrdiff_t moved : {-200, -3, 0, 200}) {
+      for (const Kernel* kernel : Kernels()) {
+        Words words(static_cast<std::size_t>(count) + 1, 7);
+        kernel->turn(packed.data(), at.data(), moved, count, words.data());
+        for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c) {
+          std::uint64_t expected = 0;
+          for (std::size_t r = 0; r < 64; ++r) {
+            const auto bit = static_cast<std::size_t>(at[r] + moved) + c;
+            expected |= std::uint64_t{bits[bit]} << r;
+          }
+          ASSERT_EQ(words[c], expected) << kernel->name << " " << count << " " << c;
+        }
+        EXPECT_EQ(words.back(), 7U) << kernel->name << " " << count;
+      }
     }
   }
 }

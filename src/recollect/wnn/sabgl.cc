@@ -88,7 +88,7 @@ std::vector<float> MeanDistances(const Memory& memory, std::span<const std::uint
 std::vector<float> DisplacedDistances(const Memory& memory, Encoder& encoder,
                                       const ImageView& image, ThreadPool& pool) {
   const Displacements grid = encoder.displacements();
-  const DisplacedPatterns& live = encoder.EncodeDisplaced(image, grid);
+  const DisplacedPatterns live = encoder.EncodeDisplaced(image, grid);
   std::vector<float> least = MeanDistances(memory, live.Under(0), pool);
   for (int d = 1; d < grid.count(); ++d) {
     const std::vector<float> other = MeanDistances(memory, live.Under(d), pool);
