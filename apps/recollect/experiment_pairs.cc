@@ -17,10 +17,13 @@ struct PairsFlags {
   LapFlags laps;
   cnn::PairOptions pairs;
   int fuse = 0;  // key frames whose answers are fused; 0: none
+  bool half = false;
 };
 
 void RunPairs(const PairsFlags& flags) {
-  const cnn::PoseNetwork network = cnn::PoseNetwork::Load(flags.model, flags.common.threads);
+  const cnn::PoseNetwork network =
+      cnn::PoseNetwork::Load(flags.model, flags.common.threads,
+                             flags.half ? cnn::Precision::kBfloat16 : cnn::Precision::kFloat32);
   std::vector<Lap> live;
   for (const std::string& folder : flags.live) {
     for (Lap& lap : ReadLapRange(folder, ParseFormat(flags.laps.format))) {
@@ -76,6 +79,7 @@ void AddExperimentPairs(CLI::App& experiment) {
   command
       ->add_option("--distance", flags->pairs.max_distance_m, "metres between two frames at most")
       ->capture_default_str();
+  command->add_flag("--bf16", flags->half, "answer in bfloat16");
   command->add_option("--key-spacing", flags->pairs.key_spacing_m,
                       "metres between key frames; 0: all frames are key frames");
   command
