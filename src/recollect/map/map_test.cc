@@ -292,19 +292,24 @@ TEST_F(MapTest, KeepsHowSureItsAnswersAre) {
 
   // What is written comes back as it was.
   wnn::Calibration some;
-  some.votes = {0.01, 3, 4};
   some.sequence = {0.02, 0.5, 0.25};
-  some.weights[1] = 0.75;
+  some.right = {1, 0.75, 2};
+  some.here = {-3, 4, 5};
   some.thresholds = {{0.9, 0.4}, {0.99, 0.8}};
   some.trials = 7;
   SetRecognition(file, some);
   const auto back = Map::Open(file).description().recognition;
   ASSERT_TRUE(back);
-  EXPECT_EQ(back->votes.sharpness, 4);
   EXPECT_EQ(back->sequence.trust, 0.5);
-  EXPECT_EQ(back->weights[1], 0.75);
+  EXPECT_EQ(back->right, some.right);
+  EXPECT_EQ(back->here, some.here);
   EXPECT_EQ(back->trials, 7);
   EXPECT_EQ(wnn::ThresholdFor(*back, 0.95), 0.8);
+
+  // Maps once said "weights", of other features.
+  std::string old = ToJson(Map::Open(file).description());
+  old.replace(old.find("\"right\""), 7, "\"weights\"");
+  EXPECT_FALSE(ParseMapDescription(old, "old").recognition);
 }
 
 TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {

@@ -109,12 +109,13 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
                               static_cast<std::ptrdiff_t>(image.step)};
     std::vector<bool> allowed(static_cast<std::size_t>(route.places()));
     for (std::size_t i = 0; i < allowed.size(); ++i) {
-      allowed[i] = alone ? i != e : mapped.lap[i] != mapped.lap[e];
+      allowed[i] = alone ? !options.leave_out || i != e : mapped.lap[i] != mapped.lap[e];
     }
     const auto ask = [&](bool nowhere) {
       wnn::EntrySet set(mapped.memory);
       wnn::Trial trial;
       if (!nowhere) trial.place = entry;
+      trial.copy = alone;
       bool found = nowhere;  // whether there is anything to find
       for (int i = 0; i < route.places(); ++i) {
         const bool may = allowed[static_cast<std::size_t>(i)];

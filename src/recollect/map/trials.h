@@ -36,11 +36,12 @@ struct TrialOptions {
   int run = 1;          // so many of them that follow each other
   bool nowhere = true;  // each once more with its place and `far` places around it taken away
   int far = 10;
+  bool leave_out = false;  // of what no other lap saw, the image itself may not be found
   std::uint64_t seed = 1;
 };
 
 // Trials from mapped images alone: each is looked for among the entries of all other laps. What no
-// other lap saw is perturbed (dataset/perturbation.h) and looked for among the entries but itself.
+// other lap saw is perturbed (dataset/perturbation.h) and looked for among all entries.
 std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
                                    const TrialOptions& options = {},
                                    const ProgressSink& progress = {});

@@ -238,6 +238,46 @@ TEST(Calibration, ProbabilitiesAreThoseOfNewImages) {
   EXPECT_THROW(Calibrate(route, {}), Error);
 }
 
+TEST(Calibration, ChangedCopiesOfOneLapCountLess) {
+  const Route route = ChainRoute(kPlaces);
+  // Of answers as clear as can be, half are wrong.
+  const auto make = [&](bool copy) {
+    std::vector<Trial> trials;
+    for (int i = 0; i < 200; ++i) {
+      const int truth = i % kPlaces, told = i % 2 == 0 ? truth : (truth + 30) % kPlaces;
+      Trial trial{{{told, 60}}, kNeurons, {}, {}, truth, copy};
+      for (int p = 0; p < kPlaces; ++p) {
+        if (route.WithinOne(truth, p)) trial.right.push_back(p);
+      }
+      trials.push_back(trial);
+    }
+    return Calibrate(route, trials);
+  };
+  const std::vector<LabelVotes> clear = {{7, 60}};
+  const auto sure = [&](const Calibration& calibration) {
+    return Judge(calibration, route, clear, kNeurons).probability;
+  };
+  EXPECT_GT(sure({}), 0.99);
+  EXPECT_LT(sure(make(true)), 0.9);
+  EXPECT_GT(sure(make(true)), sure(make(false)) + 0.1);
+  EXPECT_NEAR(sure(make(false)), 0.5, 0.05);
+}
+
+TEST(Calibration, ARivalElsewhereAndFewVotesMakeUnsure) {
+  const Route route = ChainRoute(kPlaces);
+  const auto sure = [&](const std::vector<LabelVotes>& votes) {
+    const Judged judged = Judge({}, route, votes, kNeurons);
+    EXPECT_EQ(judged.place, 7);
+    return judged.probability;
+  };
+  const double clear = sure({{7, 40}, {30, 5}});
+  EXPECT_GT(clear, 0.95);
+  EXPECT_NEAR(sure({{7, 40}, {6, 35}, {30, 5}}), clear, 0.03);  // beside it: no rival
+  EXPECT_LT(sure({{7, 40}, {30, 38}}), clear - 0.05);
+  EXPECT_LT(sure({{7, 8}, {30, 1}}), clear - 0.05);
+  EXPECT_EQ(Judge({}, route, {}, kNeurons).place, -1);
+}
+
 TEST(Calibration, ImagesThatGoWrongTogetherTellLessInASequence) {
   const Route route = ChainRoute(kPlaces);
   // One image in three speaks for a place 20 further on; eight in a row, or any of them.
