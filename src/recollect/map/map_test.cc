@@ -4,6 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -318,6 +320,29 @@ TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {
   CreateMap(file, laps, options_, pool_);
   EXPECT_THROW(CalibrateRecognition(file, pool_), Error);
   EXPECT_FALSE(Map::Open(file).description().recognition);
+}
+
+// A lap once around a circle of 24 key frames and six further, and back the other way.
+TEST(RouteOf, PassesOfOneLapLieBesideEachOther) {
+  std::vector<KeyFrame> frames;
+  const auto add = [&](int step, bool back) {
+    const double angle = 2 * M_PI * step / 24;
+    const Eigen::Vector3d at(19.1 * std::cos(angle), 19.1 * std::sin(angle), 0);
+    const Eigen::Vector3d ahead =
+        (back ? -1 : 1) * Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
+    Eigen::Matrix3d axes;
+    axes << ahead.cross(Eigen::Vector3d::UnitZ()), -Eigen::Vector3d::UnitZ(), ahead;
+    frames.push_back({SE3(axes, at), 0, 0, static_cast<std::uint32_t>(frames.size())});
+  };
+  for (int step = 0; step < 30; ++step) add(step, false);
+  for (int step = 29; step > 20; --step) add(step, true);
+  const wnn::Route route = RouteOf(frames, 5);
+  EXPECT_EQ(route.beside[2], std::vector<int>{26});
+  EXPECT_EQ(route.beside[26], std::vector<int>{2});
+  EXPECT_TRUE(route.WithinOne(3, 26));
+  for (const int alone : {10, 20, 35}) {
+    EXPECT_TRUE(route.beside[static_cast<std::size_t>(alone)].empty()) << alone;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -19,6 +21,7 @@ constexpr double kLoop = 2;       // spacings
 constexpr int kVisitLength = 10;  // entries within which another visit changes
 constexpr int kRun = 20;          // entries that calibration looks for one after the other
 constexpr double kAlike = 0.5;    // cosine of the angle between views of one place
+constexpr int kPass = 10;         // entries of a lap this near each other are of one pass
 
 double Apart(const KeyFrame& a, const KeyFrame& b) {
   return (a.world_from_camera.translation() - b.world_from_camera.translation()).norm();
@@ -27,14 +30,17 @@ bool LookAlike(const KeyFrame& a, const KeyFrame& b) {
   return a.world_from_camera.rotation().col(2).dot(b.world_from_camera.rotation().col(2)) > kAlike;
 }
 
-// The nearest key frame of another lap that may show the same place, -1 where there is none.
-int Beside(const std::vector<KeyFrame>& frames, const KeyFrame& frame, std::uint32_t lap,
-           double within) {
+// The nearest key frame of a lap that may show the same place, -1 where there is none; of the own
+// lap, one of another pass.
+int Beside(const std::vector<KeyFrame>& frames, int key, std::uint32_t lap, double within) {
+  const KeyFrame& frame = frames[static_cast<std::size_t>(key)];
   int best = -1;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double distance = Apart(frames[i], frame);
-    if (frames[i].lap != lap || distance > within || !LookAlike(frames[i], frame)) continue;
-    best = static_cast<int>(i);
+  for (int other = 0; other < static_cast<int>(frames.size()); ++other) {
+    const KeyFrame& candidate = frames[static_cast<std::size_t>(other)];
+    if (candidate.lap != lap || (lap == frame.lap && std::abs(other - key) <= kPass)) continue;
+    const double distance = Apart(candidate, frame);
+    if (distance > within || !LookAlike(candidate, frame)) continue;
+    best = other;
     within = distance;
   }
   return best;
@@ -72,8 +78,7 @@ wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
   for (int key = 0; key < size; ++key) {
     const auto i = static_cast<std::size_t>(key);
     for (std::uint32_t lap = 0; lap < laps; ++lap) {
-      if (lap == frames[i].lap) continue;
-      const int other = Beside(frames, frames[i], lap, spacing);
+      const int other = Beside(frames, key, lap, spacing);
       if (other >= 0) route.beside[i].push_back(other);
     }
     const bool ends = key + 1 == size || frames[i + 1].lap != frames[i].lap;
@@ -99,7 +104,11 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
   for (int entry = 0; entry < route.places(); ++entry) {
     if (entry / options.run % options.stride != 0) continue;
     const auto e = static_cast<std::size_t>(entry);
-    const bool alone = route.beside[e].empty();  // no other lap saw the place
+    std::vector<int> seen;  // as other laps did
+    std::copy_if(
+        route.beside[e].begin(), route.beside[e].end(), std::back_inserter(seen),
+        [&](int other) { return mapped.lap[static_cast<std::size_t>(other)] != mapped.lap[e]; });
+    const bool alone = seen.empty();
     cv::Mat image = mapped.image(entry);
     if (alone) {
       image =
@@ -125,7 +134,7 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
         trial.right.push_back(i);
         found = found || may;
       }
-      if (!nowhere && !alone) trial.exact = route.beside[e];
+      if (!nowhere) trial.exact = seen;
       if (set.size() == 0 || !found) return;
       wnn::SearchOptions search;
       search.allowed = &set;

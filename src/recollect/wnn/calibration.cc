@@ -189,7 +189,10 @@ Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
 
   std::vector<std::pair<double, bool>> found;
   std::vector<double> nowhere;
-  for (const Example& one : right) found.emplace_back(Apply(calibration, one.x), one.holds);
+  for (const Example& one : right) {
+    const bool copy = one.weight < 1;  // which does not prove that a lower threshold would do
+    if (!copy) found.emplace_back(Apply(calibration, one.x), one.holds);
+  }
   for (const Example& one : here) {
     if (!one.holds) nowhere.push_back(Apply(calibration, one.x));
   }
