@@ -322,7 +322,7 @@ TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {
   EXPECT_FALSE(Map::Open(file).description().recognition);
 }
 
-// A lap once around a circle of 24 key frames and six further, and back the other way.
+// A lap twice around a circle of 24 key frames and six further, and back the other way.
 TEST(RouteOf, PassesOfOneLapLieBesideEachOther) {
   std::vector<KeyFrame> frames;
   const auto add = [&](int step, bool back) {
@@ -334,15 +334,14 @@ TEST(RouteOf, PassesOfOneLapLieBesideEachOther) {
     axes << ahead.cross(Eigen::Vector3d::UnitZ()), -Eigen::Vector3d::UnitZ(), ahead;
     frames.push_back({SE3(axes, at), 0, 0, static_cast<std::uint32_t>(frames.size())});
   };
-  for (int step = 0; step < 30; ++step) add(step, false);
-  for (int step = 29; step > 20; --step) add(step, true);
+  for (int step = 0; step < 54; ++step) add(step, false);
+  for (int step = 53; step > 44; --step) add(step, true);
   const wnn::Route route = RouteOf(frames, 5);
-  EXPECT_EQ(route.beside[2], std::vector<int>{26});
-  EXPECT_EQ(route.beside[26], std::vector<int>{2});
-  EXPECT_TRUE(route.WithinOne(3, 26));
-  for (const int alone : {10, 20, 35}) {
-    EXPECT_TRUE(route.beside[static_cast<std::size_t>(alone)].empty()) << alone;
-  }
+  EXPECT_EQ(route.beside[2], (std::vector<int>{26, 50}));
+  EXPECT_EQ(route.beside[26], (std::vector<int>{2, 50}));
+  EXPECT_EQ(route.beside[10], std::vector<int>{34});
+  EXPECT_TRUE(route.WithinOne(3, 50));
+  EXPECT_TRUE(route.beside[58].empty());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <utility>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -30,20 +31,28 @@ bool LookAlike(const KeyFrame& a, const KeyFrame& b) {
   return a.world_from_camera.rotation().col(2).dot(b.world_from_camera.rotation().col(2)) > kAlike;
 }
 
-// The nearest key frame of a lap that may show the same place, -1 where there is none; of the own
-// lap, one of another pass.
-int Beside(const std::vector<KeyFrame>& frames, int key, std::uint32_t lap, double within) {
+// By lap, the nearest key frames that may show the same place, one of each pass.
+std::vector<int> Beside(const std::vector<KeyFrame>& frames, int key, double within) {
   const KeyFrame& frame = frames[static_cast<std::size_t>(key)];
-  int best = -1;
+  std::vector<std::pair<double, int>> near;
   for (int other = 0; other < static_cast<int>(frames.size()); ++other) {
     const KeyFrame& candidate = frames[static_cast<std::size_t>(other)];
-    if (candidate.lap != lap || (lap == frame.lap && std::abs(other - key) <= kPass)) continue;
     const double distance = Apart(candidate, frame);
-    if (distance > within || !LookAlike(candidate, frame)) continue;
-    best = other;
-    within = distance;
+    if (distance <= within && LookAlike(candidate, frame)) near.emplace_back(distance, other);
   }
-  return best;
+  std::sort(near.begin(), near.end());
+  std::vector<int> beside;
+  for (const auto& [distance, other] : near) {
+    const auto same_pass = [&frames, other = other](int taken) {
+      return frames[static_cast<std::size_t>(taken)].lap ==
+                 frames[static_cast<std::size_t>(other)].lap &&
+             std::abs(taken - other) <= kPass;
+    };
+    if (same_pass(key) || std::any_of(beside.begin(), beside.end(), same_pass)) continue;
+    beside.push_back(other);
+  }
+  std::sort(beside.begin(), beside.end());
+  return beside;
 }
 
 // Takes a place, those beside it and `far` places either way of all of them out of `allowed`.
@@ -72,15 +81,10 @@ wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
   const auto size = static_cast<int>(frames.size());
   wnn::Route route = wnn::ChainRoute(size);
   const double spacing = std::max(spacing_m, 0.1);
-  std::uint32_t laps = 0;
-  for (const KeyFrame& frame : frames) laps = std::max(laps, frame.lap + 1);
   int first = 0;  // of the lap
   for (int key = 0; key < size; ++key) {
     const auto i = static_cast<std::size_t>(key);
-    for (std::uint32_t lap = 0; lap < laps; ++lap) {
-      const int other = Beside(frames, key, lap, spacing);
-      if (other >= 0) route.beside[i].push_back(other);
-    }
+    route.beside[i] = Beside(frames, key, spacing);
     const bool ends = key + 1 == size || frames[i + 1].lap != frames[i].lap;
     if (!ends && Apart(frames[i], frames[i + 1]) <= kLapBreak * spacing) continue;
     route.next[i] = -1;
