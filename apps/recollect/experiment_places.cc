@@ -40,22 +40,26 @@ double Share(const std::vector<PlaceAnswer>& answers, double PlaceAnswer::*error
   return all == 0 ? 0 : static_cast<double>(right) / all;
 }
 
-// Of ten bins of probability: images, mean probability and share right.
-nlohmann::json Reliability(const std::vector<PlaceAnswer>& answers) {
-  nlohmann::json bins = nlohmann::json::array();
-  for (int bin = 0; bin < 10; ++bin) {
-    double said = 0;
-    int count = 0, right = 0;
-    for (const PlaceAnswer& answer : answers) {
-      if (std::min(9, static_cast<int>(10 * answer.probability)) != bin) continue;
-      said += answer.probability;
-      right += answer.single_right;
-      ++count;
-    }
-    if (count == 0) continue;
-    bins.push_back({{"images", count}, {"said", said / count}, {"right", 1.0 * right / count}});
+nlohmann::json BinsToJson(const std::vector<ReliabilityBin>& bins) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const ReliabilityBin& bin : bins) {
+    array.push_back({{"images", bin.count},
+                     {"said", bin.said},
+                     {"right", bin.right},
+                     {"right_95", {bin.low, bin.high}}});
   }
-  return bins;
+  return array;
+}
+
+// Whether of places told with probability p a share p is right, from the `from`-th image on.
+nlohmann::json Reliability(const std::vector<PlaceAnswer>& answers, Told PlaceAnswer::*of,
+                           int from = 1) {
+  std::vector<Told> told;
+  for (std::size_t i = static_cast<std::size_t>(from - 1); i < answers.size(); ++i) {
+    told.push_back(answers[i].*of);
+  }
+  return {{"bins", BinsToJson(BinsOfEqualWidth(told))},
+          {"deciles", BinsToJson(BinsOfEqualCount(told))}};
 }
 
 // How many images of other places are taken for one of the map's, at a threshold.
@@ -101,15 +105,16 @@ void Run(PlaceFlags flags) {
   std::vector<bool> right;
   int good = 0, kept_good = 0, kept = 0;
   for (const PlaceAnswer& answer : answers) {
-    scores.push_back(answer.probability);
-    right.push_back(answer.single_right);
-    good += answer.single_right;
-    kept += answer.probability >= threshold;
-    kept_good += answer.single_right && answer.probability >= threshold;
+    const bool keeps = answer.single.probability >= threshold;
+    scores.push_back(answer.single.probability);
+    right.push_back(answer.single.right);
+    good += answer.single.right;
+    kept += keeps;
+    kept_good += answer.single.right && keeps;
   }
   const wnn::PrecisionCurve curve = wnn::MakePrecisionCurve(scores, right);
   const auto [accepted, strangers] = Accepted(flags, learnt, calibration, threshold, pool);
-  const nlohmann::json figures = {
+  nlohmann::json figures = {
       {"key_frames", places.images.size()},
       {"images", answers.size()},
       {"single_by_votes", Share(answers, &PlaceAnswer::single_m, flags.within_m)},
@@ -120,19 +125,20 @@ void Run(PlaceFlags flags) {
       {"auc", curve.auc},
       {"recall_at_100_precision", curve.recall_at_100_precision},
       {"calibration",
-       {{"floor", calibration.votes.floor},
-        {"trust", calibration.votes.trust},
-        {"sharpness", calibration.votes.sharpness},
+       {{"right", calibration.right},
+        {"here", calibration.here},
         {"sequence_trust", calibration.sequence.trust},
         {"sequence_sharpness", calibration.sequence.sharpness},
-        {"weights", calibration.weights},
-        {"threshold", threshold},
-        {"bins", Reliability(answers)}}},
+        {"threshold", threshold}}},
+      {"reliability", Reliability(answers, &PlaceAnswer::single)},
       {"kept", kept},
       {"kept_right", kept_good},
       {"right", good},
       {"strangers", strangers},
       {"strangers_accepted", accepted}};
+  if (flags.sequence.filter != wnn::Filter::kSabgl) {  // whose beliefs are votes
+    figures["filter_reliability"] = Reliability(answers, &PlaceAnswer::filtered, flags.from);
+  }
   fmt::print("{}\n", figures.dump(2));
   WriteFigures(flags.common, figures);
 }

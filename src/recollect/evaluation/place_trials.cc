@@ -121,9 +121,11 @@ std::vector<PlaceAnswer> AnswerLive(LearntPlaces& learnt, const Lap& live, doubl
     const wnn::Judged judged =
         wnn::Judge(calibration, places.route, one.histogram, one.neurons_read);
     const int nearest = NearestFrame(places.frames, truth);
-    answers.push_back({error(one.winner), error(judged.place), error(filtered.place),
-                       places.route.WithinOne(nearest, judged.place), judged.probability,
-                       filtered.probability});
+    answers.push_back({error(one.winner),
+                       error(judged.place),
+                       error(filtered.place),
+                       {judged.probability, places.route.WithinOne(nearest, judged.place)},
+                       {filtered.probability, places.route.WithinOne(nearest, filtered.place)}});
     Report(progress, "recollect", static_cast<std::int64_t>(answers.size()),
            static_cast<std::int64_t>(sampled.size()));
   }
@@ -214,8 +216,8 @@ Estimate MeanOf(const std::vector<double>& values) {
 double TrialScore(const PlaceImages& places, const wnn::NetworkOptions& network, int stride,
                   ThreadPool& pool) {
   LearntPlaces learnt(places, network, pool);
-  const auto trials =
-      learnt.Trials(pool, {.stride = stride, .nowhere = false, .seed = network.seed});
+  const auto trials = learnt.Trials(
+      pool, {.stride = stride, .nowhere = false, .leave_out = true, .seed = network.seed});
   Require(!trials.empty(), "trials", "no place is seen by two laps");
   int right = 0;
   for (const wnn::Trial& trial : trials) {

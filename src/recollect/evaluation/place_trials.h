@@ -7,6 +7,7 @@
 
 #include "recollect/core/progress.h"
 #include "recollect/dataset/lap.h"
+#include "recollect/evaluation/place_reliability.h"
 #include "recollect/map/map.h"
 #include "recollect/map/trials.h"
 #include "recollect/wnn/calibration.h"
@@ -45,12 +46,12 @@ struct LearntPlaces {
 
 // What was answered for one live image.
 struct PlaceAnswer {
-  double single_m = 0;        // from the key frame answered to the truth: by the votes alone,
-  double supported_m = 0;     // by support (wnn::Supported),
-  double filtered_m = 0;      // and by the sequence
-  bool single_right = false;  // answered by support, within one key frame of the nearest one
-  double probability = 0;     // of that, by the calibration
-  double belief = 0;          // the sequence's own
+  double single_m = 0;     // from the key frame answered to the truth: by the votes alone,
+  double supported_m = 0;  // by support (wnn::Supported),
+  double filtered_m = 0;   // and by the sequence
+  // Right: within one key frame of the nearest one.
+  Told single;    // by support, its probability by the calibration
+  Told filtered;  // by the sequence, with its own
 };
 std::vector<PlaceAnswer> AnswerLive(LearntPlaces& learnt, const Lap& live, double live_spacing_m,
                                     const wnn::SequenceOptions& sequence,

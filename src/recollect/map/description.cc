@@ -96,9 +96,9 @@ json VotesToJson(const wnn::VoteModel& votes) {
 json CalibrationToJson(const wnn::Calibration& c) {
   json thresholds = json::array();
   for (const auto& one : c.thresholds) thresholds.push_back({one.precision, one.probability});
-  return {{"votes", VotesToJson(c.votes)},
+  return {{"right", c.right},
+          {"here", c.here},
           {"sequence", VotesToJson(c.sequence)},
-          {"weights", c.weights},
           {"thresholds", thresholds},
           {"trials", c.trials}};
 }
@@ -110,10 +110,10 @@ wnn::VoteModel VotesFromJson(const json& j) {
 
 wnn::Calibration CalibrationFromJson(const json& j) {
   wnn::Calibration c;
-  c.votes = VotesFromJson(j.at("votes"));
+  j.at("right").get_to(c.right);
+  j.at("here").get_to(c.here);
   c.sequence = VotesFromJson(j.at("sequence"));
   j.at("trials").get_to(c.trials);
-  for (std::size_t i = 0; i < std::size(c.weights); ++i) j.at("weights").at(i).get_to(c.weights[i]);
   for (const json& one : j.at("thresholds")) {
     c.thresholds.push_back({one.at(0).get<double>(), one.at(1).get<double>()});
   }
@@ -177,7 +177,11 @@ MapDescription ParseMapDescription(const std::string& text, const std::string& w
     j.at("spacing_m").get_to(d.spacing_m);
     d.network = NetworkFromJson(j.at("wnn"));
     d.geometry_inflation = j.value("geometry_inflation", 0.0);
-    if (j.contains("recognition")) d.recognition = CalibrationFromJson(j.at("recognition"));
+    // Probabilities were another function of the votes once ("weights"): such a map is one that was
+    // never calibrated.
+    if (j.contains("recognition") && !j.at("recognition").contains("weights")) {
+      d.recognition = CalibrationFromJson(j.at("recognition"));
+    }
     for (const json& lap : j.at("laps")) {
       d.laps.push_back({lap.at("name").get<std::string>(), lap.at("key_frames").get<int>()});
     }

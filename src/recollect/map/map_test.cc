@@ -4,6 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -292,19 +294,24 @@ TEST_F(MapTest, KeepsHowSureItsAnswersAre) {
 
   // What is written comes back as it was.
   wnn::Calibration some;
-  some.votes = {0.01, 3, 4};
   some.sequence = {0.02, 0.5, 0.25};
-  some.weights[1] = 0.75;
+  some.right = {1, 0.75, 2};
+  some.here = {-3, 4, 5};
   some.thresholds = {{0.9, 0.4}, {0.99, 0.8}};
   some.trials = 7;
   SetRecognition(file, some);
   const auto back = Map::Open(file).description().recognition;
   ASSERT_TRUE(back);
-  EXPECT_EQ(back->votes.sharpness, 4);
   EXPECT_EQ(back->sequence.trust, 0.5);
-  EXPECT_EQ(back->weights[1], 0.75);
+  EXPECT_EQ(back->right, some.right);
+  EXPECT_EQ(back->here, some.here);
   EXPECT_EQ(back->trials, 7);
   EXPECT_EQ(wnn::ThresholdFor(*back, 0.95), 0.8);
+
+  // Maps once said "weights", of other features.
+  std::string old = ToJson(Map::Open(file).description());
+  old.replace(old.find("\"right\""), 7, "\"weights\"");
+  EXPECT_FALSE(ParseMapDescription(old, "old").recognition);
 }
 
 TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {
@@ -313,6 +320,28 @@ TEST_F(MapTest, TooSmallAMapIsNotCalibrated) {
   CreateMap(file, laps, options_, pool_);
   EXPECT_THROW(CalibrateRecognition(file, pool_), Error);
   EXPECT_FALSE(Map::Open(file).description().recognition);
+}
+
+// A lap twice around a circle of 24 key frames and six further, and back the other way.
+TEST(RouteOf, PassesOfOneLapLieBesideEachOther) {
+  std::vector<KeyFrame> frames;
+  const auto add = [&](int step, bool back) {
+    const double angle = 2 * M_PI * step / 24;
+    const Eigen::Vector3d at(19.1 * std::cos(angle), 19.1 * std::sin(angle), 0);
+    const Eigen::Vector3d ahead =
+        (back ? -1 : 1) * Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
+    Eigen::Matrix3d axes;
+    axes << ahead.cross(Eigen::Vector3d::UnitZ()), -Eigen::Vector3d::UnitZ(), ahead;
+    frames.push_back({SE3(axes, at), 0, 0, static_cast<std::uint32_t>(frames.size())});
+  };
+  for (int step = 0; step < 54; ++step) add(step, false);
+  for (int step = 53; step > 44; --step) add(step, true);
+  const wnn::Route route = RouteOf(frames, 5);
+  EXPECT_EQ(route.beside[2], (std::vector<int>{26, 50}));
+  EXPECT_EQ(route.beside[26], (std::vector<int>{2, 50}));
+  EXPECT_EQ(route.beside[10], std::vector<int>{34});
+  EXPECT_TRUE(route.WithinOne(3, 50));
+  EXPECT_TRUE(route.beside[58].empty());
 }
 
 }  // namespace

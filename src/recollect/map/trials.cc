@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <utility>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
@@ -19,6 +22,7 @@ constexpr double kLoop = 2;       // spacings
 constexpr int kVisitLength = 10;  // entries within which another visit changes
 constexpr int kRun = 20;          // entries that calibration looks for one after the other
 constexpr double kAlike = 0.5;    // cosine of the angle between views of one place
+constexpr int kPass = 10;         // entries of a lap this near each other are of one pass
 
 double Apart(const KeyFrame& a, const KeyFrame& b) {
   return (a.world_from_camera.translation() - b.world_from_camera.translation()).norm();
@@ -27,17 +31,28 @@ bool LookAlike(const KeyFrame& a, const KeyFrame& b) {
   return a.world_from_camera.rotation().col(2).dot(b.world_from_camera.rotation().col(2)) > kAlike;
 }
 
-// The nearest key frame of another lap that may show the same place, -1 where there is none.
-int Beside(const std::vector<KeyFrame>& frames, const KeyFrame& frame, std::uint32_t lap,
-           double within) {
-  int best = -1;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double distance = Apart(frames[i], frame);
-    if (frames[i].lap != lap || distance > within || !LookAlike(frames[i], frame)) continue;
-    best = static_cast<int>(i);
-    within = distance;
+// By lap, the nearest key frames that may show the same place, one of each pass.
+std::vector<int> Beside(const std::vector<KeyFrame>& frames, int key, double within) {
+  const KeyFrame& frame = frames[static_cast<std::size_t>(key)];
+  std::vector<std::pair<double, int>> near;
+  for (int other = 0; other < static_cast<int>(frames.size()); ++other) {
+    const KeyFrame& candidate = frames[static_cast<std::size_t>(other)];
+    const double distance = Apart(candidate, frame);
+    if (distance <= within && LookAlike(candidate, frame)) near.emplace_back(distance, other);
   }
-  return best;
+  std::sort(near.begin(), near.end());
+  std::vector<int> beside;
+  for (const auto& [distance, other] : near) {
+    const auto same_pass = [&frames, other = other](int taken) {
+      return frames[static_cast<std::size_t>(taken)].lap ==
+                 frames[static_cast<std::size_t>(other)].lap &&
+             std::abs(taken - other) <= kPass;
+    };
+    if (same_pass(key) || std::any_of(beside.begin(), beside.end(), same_pass)) continue;
+    beside.push_back(other);
+  }
+  std::sort(beside.begin(), beside.end());
+  return beside;
 }
 
 // Takes a place, those beside it and `far` places either way of all of them out of `allowed`.
@@ -66,16 +81,10 @@ wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
   const auto size = static_cast<int>(frames.size());
   wnn::Route route = wnn::ChainRoute(size);
   const double spacing = std::max(spacing_m, 0.1);
-  std::uint32_t laps = 0;
-  for (const KeyFrame& frame : frames) laps = std::max(laps, frame.lap + 1);
   int first = 0;  // of the lap
   for (int key = 0; key < size; ++key) {
     const auto i = static_cast<std::size_t>(key);
-    for (std::uint32_t lap = 0; lap < laps; ++lap) {
-      if (lap == frames[i].lap) continue;
-      const int other = Beside(frames, frames[i], lap, spacing);
-      if (other >= 0) route.beside[i].push_back(other);
-    }
+    route.beside[i] = Beside(frames, key, spacing);
     const bool ends = key + 1 == size || frames[i + 1].lap != frames[i].lap;
     if (!ends && Apart(frames[i], frames[i + 1]) <= kLapBreak * spacing) continue;
     route.next[i] = -1;
@@ -99,7 +108,11 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
   for (int entry = 0; entry < route.places(); ++entry) {
     if (entry / options.run % options.stride != 0) continue;
     const auto e = static_cast<std::size_t>(entry);
-    const bool alone = route.beside[e].empty();  // no other lap saw the place
+    std::vector<int> seen;  // as other laps did
+    std::copy_if(
+        route.beside[e].begin(), route.beside[e].end(), std::back_inserter(seen),
+        [&](int other) { return mapped.lap[static_cast<std::size_t>(other)] != mapped.lap[e]; });
+    const bool alone = seen.empty();
     cv::Mat image = mapped.image(entry);
     if (alone) {
       image =
@@ -109,12 +122,13 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
                               static_cast<std::ptrdiff_t>(image.step)};
     std::vector<bool> allowed(static_cast<std::size_t>(route.places()));
     for (std::size_t i = 0; i < allowed.size(); ++i) {
-      allowed[i] = alone ? i != e : mapped.lap[i] != mapped.lap[e];
+      allowed[i] = alone ? !options.leave_out || i != e : mapped.lap[i] != mapped.lap[e];
     }
     const auto ask = [&](bool nowhere) {
       wnn::EntrySet set(mapped.memory);
       wnn::Trial trial;
       if (!nowhere) trial.place = entry;
+      trial.copy = alone;
       bool found = nowhere;  // whether there is anything to find
       for (int i = 0; i < route.places(); ++i) {
         const bool may = allowed[static_cast<std::size_t>(i)];
@@ -124,7 +138,7 @@ std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, 
         trial.right.push_back(i);
         found = found || may;
       }
-      if (!nowhere && !alone) trial.exact = route.beside[e];
+      if (!nowhere) trial.exact = seen;
       if (set.size() == 0 || !found) return;
       wnn::SearchOptions search;
       search.allowed = &set;

@@ -16,9 +16,10 @@ namespace recollect {
 class ThreadPool;
 
 // The places of a map: one a key frame, ahead of each other as their lap went, beside each other
-// where key frames of different laps lie closest, at most a spacing apart and looking less than 60
-// degrees away from one another. Laps end where two key frames are more than 3 spacings apart; one
-// whose end lies within 2 spacings of its start goes on there.
+// where key frames of different laps, or passes of one lap more than ten key frames later, lie
+// closest, at most a spacing apart and looking less than 60 degrees away from one another. Laps end
+// where two key frames are more than 3 spacings apart; one whose end lies within 2 spacings of its
+// start goes on there.
 wnn::Route RouteOf(const Map& map);
 // The same of key frames in the order they were learnt, those of a lap together.
 wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m);
@@ -36,11 +37,12 @@ struct TrialOptions {
   int run = 1;          // so many of them that follow each other
   bool nowhere = true;  // each once more with its place and `far` places around it taken away
   int far = 10;
+  bool leave_out = false;  // of what no other lap saw, the image itself may not be found
   std::uint64_t seed = 1;
 };
 
 // Trials from mapped images alone: each is looked for among the entries of all other laps. What no
-// other lap saw is perturbed (dataset/perturbation.h) and looked for among the entries but itself.
+// other lap saw is perturbed (dataset/perturbation.h) and looked for among all entries.
 std::vector<wnn::Trial> MakeTrials(const Mapped& mapped, wnn::Encoder& encoder, ThreadPool& pool,
                                    const TrialOptions& options = {},
                                    const ProgressSink& progress = {});

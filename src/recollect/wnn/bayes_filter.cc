@@ -12,10 +12,15 @@ namespace {
 
 // Places an image: standing, creeping between far-apart key frames, up to passing several at once.
 constexpr double kSpeeds[] = {0, 0.1, 0.2, 0.35, 0.6, 1, 1.5, 2.2, 3.2, 4.5};
-constexpr double kSpeedChange = 0.1;  // chance that speed goes one step up or down
-constexpr double kLeastNews = 0.1;    // share of an image's likelihood that counts without moving
+constexpr double kSpeedChange = 0.05;  // chance that speed goes one step up or down
+constexpr double kLeastNews = 0.1;     // share of an image's likelihood that counts without moving
+constexpr double kRemember = 0.05;     // what the newest image counts in the speed remembered
+constexpr double kForget = 0.1;        // chance that the speed remembered is of no use
 
 double News(double places) { return std::clamp(std::sqrt(std::abs(places)), kLeastNews, 1.0); }
+
+// Who takes images of a road moves along it: up to a place an image, the faster the likelier.
+double Usual(double speed) { return std::clamp(std::abs(speed), 0.1, 1.0); }
 
 }  // namespace
 
@@ -27,7 +32,11 @@ BayesFilter::BayesFilter(const SequenceOptions& options, const Route& route)
     }
   }
   speeds_.insert(speeds_.end(), std::begin(kSpeeds), std::end(kSpeeds));
-  for (const double speed : speeds_) shares_.push_back(News(speed));
+  for (const double speed : speeds_) {
+    shares_.push_back(News(speed));
+    usual_.push_back(Usual(speed));
+  }
+  Normalise(usual_);
   std::sort(shares_.begin(), shares_.end(), std::greater<>());
   shares_.erase(std::unique(shares_.begin(), shares_.end()), shares_.end());
   for (const double speed : speeds_) {
@@ -40,11 +49,23 @@ BayesFilter::BayesFilter(const SequenceOptions& options, const Route& route)
 void BayesFilter::Reset() {
   state_.clear();
   steps_.clear();
+  remembered_ = usual_;
 }
 
 BayesFilter::State BayesFilter::Anywhere() const {
-  const double share = 1.0 / static_cast<double>(speeds_.size() * route_.next.size());
-  return State(speeds_.size(), std::vector<double>(route_.next.size(), share));
+  State state;
+  for (std::size_t s = 0; s < speeds_.size(); ++s) {
+    const double chance = (1 - kForget) * remembered_[s] + kForget * usual_[s];
+    state.emplace_back(route_.next.size(), chance / static_cast<double>(route_.next.size()));
+  }
+  return state;
+}
+
+void BayesFilter::RememberSpeed() {
+  for (std::size_t s = 0; s < speeds_.size(); ++s) {
+    const double chance = std::accumulate(state_[s].begin(), state_[s].end(), 0.0);
+    remembered_[s] += kRemember * (chance - remembered_[s]);
+  }
 }
 
 std::vector<double> BayesFilter::Moved(const std::vector<double>& weights, double places) const {
@@ -67,13 +88,16 @@ void BayesFilter::Predict(State& state, std::optional<double> moved) const {
   const std::size_t speeds = speeds_.size(), places = route_.next.size();
   State next(speeds);
   for (std::size_t s = 0; s < speeds; ++s) {
-    // Speed first, then place, then the lap that is followed.
+    // Speed first, then place, then the lap that is followed. Left alone, speeds become the usual.
+    const std::size_t below = s == 0 ? s : s - 1, above = s + 1 == speeds ? s : s + 1;
+    const auto changes = [&](std::size_t from, std::size_t to) {
+      return from == to ? 0 : kSpeedChange / 2 * std::min(1.0, usual_[to] / usual_[from]);
+    };
+    const double stay = 1 - changes(s, below) - changes(s, above);
+    const double up = changes(below, s), down = changes(above, s);
     std::vector<double> mixed(places);
-    const double stay = 1 - kSpeedChange;
-    const auto& below = state[s == 0 ? 0 : s - 1];
-    const auto& above = state[s + 1 == speeds ? s : s + 1];
     for (std::size_t i = 0; i < places; ++i) {
-      mixed[i] = stay * state[s][i] + kSpeedChange / 2 * (below[i] + above[i]);
+      mixed[i] = stay * state[s][i] + up * state[below][i] + down * state[above][i];
     }
     mixed = Moved(mixed, moved ? *moved : speeds_[s]);
     next[s].assign(places, options_.jump / static_cast<double>(speeds * places));
@@ -109,10 +133,25 @@ BayesFilter::Step BayesFilter::Seen(const Observation& observation) const {
 }
 
 void BayesFilter::Correct(State& state, const Step& step) const {
+  const bool known = step.likelihoods.size() == 1;  // how far one has moved
+  double common = 0;                                // the power that tells speeds apart
+  for (std::size_t s = 0; s < state.size() && !known; ++s) {
+    common += shares_[share_of_[s]] * std::accumulate(state[s].begin(), state[s].end(), 0.0);
+  }
+  std::vector<double> tells = step.likelihoods.front();
+  if (!known) {
+    for (double& one : tells) one = std::pow(one, common);
+  }
   double sum = 0;
   for (std::size_t s = 0; s < state.size(); ++s) {
-    const auto& likelihood = step.likelihoods[step.likelihoods.size() > 1 ? share_of_[s] : 0];
-    for (std::size_t i = 0; i < likelihood.size(); ++i) sum += state[s][i] *= likelihood[i];
+    const auto& likelihood = step.likelihoods[known ? 0 : share_of_[s]];
+    double evidence = 0, all = 0;
+    for (std::size_t i = 0; i < likelihood.size(); ++i) {
+      evidence += state[s][i] * tells[i];
+      all += state[s][i] *= likelihood[i];
+    }
+    for (double& weight : state[s]) weight *= evidence / all;
+    sum += evidence;
   }
   for (auto& places : state) {
     for (double& weight : places) weight /= sum;
@@ -129,6 +168,7 @@ std::vector<double> BayesFilter::Update(const Observation& observation) {
       if (i > 0) Predict(state_, steps_[i].moved);
       Correct(state_, steps_[i]);
     }
+    RememberSpeed();
   } else {
     if (state_.empty()) {
       state_ = Anywhere();

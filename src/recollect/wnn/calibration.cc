@@ -11,117 +11,42 @@
 namespace recollect::wnn {
 namespace {
 
-constexpr double kFloors[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05};
-constexpr double kTrusts[] = {0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 11, 16};
-constexpr double kSharpnesses[] = {0.25, 0.5, 1, 2, 3, 4, 6, 8};
 constexpr double kSequenceTrusts[] = {0.125, 0.25, 0.5, 1, 2, 4, 8};  // and sharpnesses
 constexpr std::size_t kShortestRun = 5;                               // images that make a sequence
 constexpr double kPrecisions[] = {0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995};
 constexpr double kSmallest = 1e-6;  // chances are kept this far from 0 and 1
-constexpr double kNowhere = 0.1;    // what an image from nowhere counts beside one from the route
-constexpr double kPrior = 0.1;      // pull of the weights towards (0, 1, 0), in trials
+constexpr double kNowhere = 0.03;   // what an image from nowhere counts beside one of the route
+constexpr double kCopy = 0.01;      // a changed copy of a mapped image beside another lap's
+constexpr double kPrior = 0.1;      // pull of the weights towards their default, in trials
+constexpr double kVote = 0.01;      // share of the neurons that any place is granted for its rival
 
 double Sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
-double LogOdds(double p) {
-  p = std::clamp(p, kSmallest, 1 - kSmallest);
-  return std::log(p / (1 - p));
-}
 
 struct Features {
   int place = -1;
   Eigen::Vector3d x;
 };
 
-Features FeaturesOf(const VoteModel& model, const Route& route,
-                    std::span<const LabelVotes> histogram, int neurons) {
-  std::vector<double> belief = Likelihood(model, route, {histogram, neurons, {}, {}});
-  double sum = 0;
-  for (const double one : belief) sum += one;
-  for (double& one : belief) one /= sum;
+Features FeaturesOf(const Route& route, std::span<const LabelVotes> histogram, int neurons) {
   Features features;
   features.place = Supported(route, histogram);
-  double within = 0;
-  for (int place = 0; place < route.places(); ++place) {
-    if (route.WithinOne(features.place, place)) within += belief[static_cast<std::size_t>(place)];
+  const double all = std::max(1, neurons);
+  double own = 0, rival = 0;
+  for (const LabelVotes& one : histogram) {
+    if (one.label == features.place) own = one.votes;
+    if (!route.WithinOne(features.place, one.label)) rival = std::max<double>(rival, one.votes);
   }
   const std::vector<double> support = Support(route, histogram);
   const double most = *std::max_element(support.begin(), support.end());
-  features.x = {1, LogOdds(within), std::log(most / std::max(1, neurons) + kSmallest)};
+  const auto& beside = route.beside[static_cast<std::size_t>(features.place)];
+  const double laps = 1 + static_cast<double>(beside.size());
+  features.x = {1, std::log((own + kVote * all) / (rival + kVote * all)),
+                std::log(most / laps / all + kSmallest)};
   return features;
 }
 
 bool IsRight(const Trial& trial, int place) {
   return std::find(trial.right.begin(), trial.right.end(), place) != trial.right.end();
-}
-
-// What fitting needs of a trial: places that any vote speaks for, and how many there are besides.
-struct Supporters {
-  struct Place {
-    double support = 0, own = 0;  // shares of the neurons
-    bool right = false;
-  };
-  std::vector<Place> places;
-  double others = 0, others_right = 0;
-};
-
-Supporters SupportersOf(const Route& route, const Trial& trial) {
-  const std::vector<double> support = Support(route, trial.histogram);
-  const double neurons = std::max(1, trial.neurons);
-  std::vector<double> own(support.size(), 0);
-  for (const LabelVotes& one : trial.histogram) {
-    own[static_cast<std::size_t>(one.label)] = one.votes / neurons;
-  }
-  const std::vector<int>& truth = trial.exact.empty() ? trial.right : trial.exact;
-  Supporters supporters;
-  for (int place = 0; place < route.places(); ++place) {
-    const auto i = static_cast<std::size_t>(place);
-    if (support[i] > 0) {
-      supporters.places.push_back({support[i] / neurons, own[i],
-                                   std::find(truth.begin(), truth.end(), place) != truth.end()});
-    }
-  }
-  supporters.others = static_cast<double>(support.size() - supporters.places.size());
-  supporters.others_right = static_cast<double>(truth.size());
-  for (const auto& place : supporters.places) supporters.others_right -= place.right ? 1 : 0;
-  return supporters;
-}
-
-// Sum of the log likelihoods of the truth; Likelihood, without the places that are all alike.
-double Fit(const std::vector<Supporters>& trials, const VoteModel& model) {
-  double sum = 0;
-  for (const Supporters& trial : trials) {
-    const double other = std::pow(model.floor, model.trust + model.sharpness);
-    double right = other * trial.others_right, all = other * trial.others;
-    for (const Supporters::Place& place : trial.places) {
-      const double likelihood = std::exp(model.trust * std::log(place.support + model.floor) +
-                                         model.sharpness * std::log(place.own + model.floor));
-      all += likelihood;
-      if (place.right) right += likelihood;
-    }
-    sum += std::log(std::max(right / all, kSmallest));
-  }
-  return sum;
-}
-
-VoteModel FitVotes(const Route& route, std::span<const Trial> trials) {
-  std::vector<Supporters> supporters;
-  for (const Trial& trial : trials) {
-    if (!trial.right.empty()) supporters.push_back(SupportersOf(route, trial));
-  }
-  VoteModel best;
-  double most = -std::numeric_limits<double>::infinity();
-  for (const double floor : kFloors) {
-    for (const double trust : kTrusts) {
-      for (const double sharpness : kSharpnesses) {
-        const VoteModel model{floor, trust, sharpness};
-        const double fit = Fit(supporters, model);
-        if (fit <= most) continue;
-        most = fit;
-        best = model;
-      }
-    }
-  }
-  return best;
 }
 
 // Trials whose places follow each other, on a road that another lap has seen: how images of another
@@ -174,34 +99,64 @@ VoteModel FitSequence(const Route& route, std::span<const Trial> trials) {
   return best;
 }
 
-// A live image's features, whether its answer was right, and what it counts.
+// A live image's features, whether what is asked holds of it, and what it counts.
 struct Example {
   Eigen::Vector3d x;
-  bool right = false;
+  bool holds = false;
   double weight = 1;
 };
 
-// Newton's method on the penalised log likelihood of a logistic model.
-Eigen::Vector3d Logistic(const std::vector<Example>& examples) {
-  const Eigen::Vector3d prior(0, 1, 0);
-  Eigen::Vector3d w = prior;
-  for (int step = 0; step < 50; ++step) {
+// Minus the penalised log likelihood of a logistic model.
+double Loss(const std::vector<Example>& examples, const Eigen::Vector3d& w,
+            const Eigen::Vector3d& prior) {
+  double loss = kPrior / 2 * (w - prior).squaredNorm();
+  for (const auto& [x, holds, weight] : examples) {
+    const double z = holds ? w.dot(x) : -w.dot(x);
+    loss += weight * (z > 0 ? std::log1p(std::exp(-z)) : std::log1p(std::exp(z)) - z);
+  }
+  return loss;
+}
+
+// Newton's method on it, with steps halved until they help.
+void Logistic(const std::vector<Example>& examples, Calibration::Weights& weights) {
+  Eigen::Map<Eigen::Vector3d> w(weights.data());
+  const Eigen::Vector3d prior = w;
+  for (int step = 0; step < 100; ++step) {
     Eigen::Vector3d gradient = kPrior * (w - prior);
     Eigen::Matrix3d hessian = kPrior * Eigen::Matrix3d::Identity();
-    for (const auto& [x, right, weight] : examples) {
+    for (const auto& [x, holds, weight] : examples) {
       const double p = Sigmoid(w.dot(x));
-      gradient += weight * (p - (right ? 1 : 0)) * x;
-      hessian += weight * std::max(p * (1 - p), kSmallest) * x * x.transpose();
+      gradient += weight * (p - (holds ? 1 : 0)) * x;
+      hessian += weight * p * (1 - p) * x * x.transpose();
     }
-    const Eigen::Vector3d change = hessian.ldlt().solve(gradient);
-    w -= change * std::min(1.0, 2 / (change.norm() + kSmallest));
-    if (change.norm() < 1e-9) break;
+    Eigen::Vector3d change = hessian.ldlt().solve(gradient);
+    const double loss = Loss(examples, w, prior);
+    while (change.norm() > 1e-9 && Loss(examples, w - change, prior) > loss) change /= 2;
+    if (change.norm() <= 1e-9) break;
+    w -= change;
   }
-  return w;
 }
 
 double Apply(const Calibration& calibration, const Eigen::Vector3d& x) {
-  return Sigmoid(Eigen::Map<const Eigen::Vector3d>(calibration.weights).dot(x));
+  return Sigmoid(Eigen::Map<const Eigen::Vector3d>(calibration.right.data()).dot(x)) *
+         Sigmoid(Eigen::Map<const Eigen::Vector3d>(calibration.here.data()).dot(x));
+}
+
+// `found`: probabilities of trials of the route, and whether they were right; `nowhere`: of others.
+double Threshold(double precision, const std::vector<std::pair<double, bool>>& found,
+                 const std::vector<double>& nowhere) {
+  const double allowed = std::ceil((1 - precision) * static_cast<double>(nowhere.size()));
+  double threshold = precision;
+  int kept = 0, correct = 0;
+  for (const auto& [p, is_right] : found) {
+    ++kept;
+    correct += is_right;
+    const auto strangers =
+        std::count_if(nowhere.begin(), nowhere.end(), [p = p](double other) { return other >= p; });
+    if (static_cast<double>(strangers) > allowed) break;
+    if (correct >= precision * kept) threshold = std::min(threshold, p);
+  }
+  return threshold;
 }
 
 }  // namespace
@@ -209,7 +164,7 @@ double Apply(const Calibration& calibration, const Eigen::Vector3d& x) {
 Judged Judge(const Calibration& calibration, const Route& route,
              std::span<const LabelVotes> histogram, int neurons) {
   if (histogram.empty()) return {};
-  const Features features = FeaturesOf(calibration.votes, route, histogram, neurons);
+  const Features features = FeaturesOf(route, histogram, neurons);
   return {features.place, Apply(calibration, features.x)};
 }
 
@@ -219,42 +174,31 @@ Calibration Calibrate(const Route& route, std::span<const Trial> trials) {
       "calibration", "no trial lies on the route");
   Calibration calibration;
   calibration.trials = static_cast<int>(trials.size());
-  calibration.votes = FitVotes(route, trials);
   calibration.sequence = FitSequence(route, trials);
-  std::vector<Example> examples;
-  std::vector<Features> features;
+  std::vector<Example> right, here;
   for (const Trial& trial : trials) {
-    features.push_back(FeaturesOf(calibration.votes, route, trial.histogram, trial.neurons));
-    examples.push_back({features.back().x, IsRight(trial, features.back().place),
-                        trial.right.empty() ? kNowhere : 1});
+    if (trial.histogram.empty()) continue;
+    const Features features = FeaturesOf(route, trial.histogram, trial.neurons);
+    const bool on_route = !trial.right.empty();
+    const double weight = trial.copy ? kCopy : 1;
+    if (on_route) right.push_back({features.x, IsRight(trial, features.place), weight});
+    here.push_back({features.x, on_route, weight * (on_route ? 1 : kNowhere)});
   }
-  Eigen::Map<Eigen::Vector3d>(calibration.weights) = Logistic(examples);
+  Logistic(right, calibration.right);
+  Logistic(here, calibration.here);
 
-  std::vector<double> found, nowhere;  // probabilities of either kind of trial
-  std::vector<std::pair<double, bool>> judged;
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    const double p = Apply(calibration, features[i].x);
-    if (trials[i].right.empty()) {
-      nowhere.push_back(p);
-    } else {
-      judged.emplace_back(p, IsRight(trials[i], features[i].place));
-    }
+  std::vector<std::pair<double, bool>> found;
+  std::vector<double> nowhere;
+  for (const Example& one : right) {
+    const bool copy = one.weight < 1;  // which does not prove that a lower threshold would do
+    if (!copy) found.emplace_back(Apply(calibration, one.x), one.holds);
   }
-  std::sort(judged.begin(), judged.end(), std::greater<>());
+  for (const Example& one : here) {
+    if (!one.holds) nowhere.push_back(Apply(calibration, one.x));
+  }
+  std::sort(found.begin(), found.end(), std::greater<>());
   for (const double precision : kPrecisions) {
-    double threshold = 1;
-    int kept = 0, correct = 0;
-    for (const auto& [p, is_right] : judged) {
-      ++kept;
-      correct += is_right;
-      const auto strangers = std::count_if(nowhere.begin(), nowhere.end(),
-                                           [p = p](double other) { return other >= p; });
-      if (static_cast<double>(strangers) > (1 - precision) * static_cast<double>(nowhere.size())) {
-        break;
-      }
-      if (correct >= precision * kept) threshold = p;
-    }
-    calibration.thresholds.push_back({precision, threshold});
+    calibration.thresholds.push_back({precision, Threshold(precision, found, nowhere)});
   }
   return calibration;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -14,16 +15,20 @@ struct Trial {
   std::vector<int> right;  // places within one of the truth; empty: it lies nowhere on the route
   std::vector<int> exact;  // of these the nearest ones of other laps, where these saw the place
   int place = -1;          // of the mapped image that it is; -1: of none, or it lies nowhere
+  bool copy = false;       // a changed copy of a mapped image, for want of another visit
 };
 
 // What the committee's votes are worth.
 struct Calibration {
-  VoteModel votes;
-  // The same of images that follow each other: they go wrong together, so each tells less.
+  // Log odds: weights times 1, the log of the answer's votes over the most of any place not within
+  // one of it, and the log of the share of neurons that supports it, per lap.
+  using Weights = std::array<double, 3>;
+  // As trials among laps of other roads taught, before those of the map at hand have their say.
+  Weights right{3, 12.5, 1.5};  // of being right, given that the image is of the route
+  Weights here{11, 3, 5.5};     // of being of the route
+  // What votes tell of images that follow each other, which go wrong together.
   VoteModel sequence;
-  double weights[3] = {0, 1, 0};  // log odds of being right: 1, log odds of the belief, log of
-                                  // the support's share; see ProbabilityRight
-  // Thresholds on ProbabilityRight, rising with `precision`.
+  // Thresholds on the probability that Judge gives, rising with `precision`.
   struct Threshold {
     double precision = 0, probability = 0;
   };
@@ -39,12 +44,14 @@ struct Judged {
 Judged Judge(const Calibration& calibration, const Route& route,
              std::span<const LabelVotes> histogram, int neurons);
 
-// Fits the vote model to the likelihood of the (exact) truth of the trials that lie on the route,
-// the weights to whether their answers are right (logistic regression), and the thresholds to both
-// those trials and those from nowhere: at each, so many of the answers kept are right, and at most
-// the rest of the images from nowhere are kept. The model of sequences is fit to what a Bayes
-// filter believes of the truth, over trials whose places follow each other and were seen by other
-// laps; without any such it is the default. Throws Error without a trial that lies on the route.
+// Fits the chance that answers are right to trials that lie on the route, and the chance to be on
+// it to these and those from nowhere (two logistic regressions), both drawn to the default: trials
+// of one lap's changed copies hardly move it. Thresholds: at each, so many of the answers kept are
+// right and at most the rest of the images from nowhere are kept; but an image that is itself given
+// the wanted probability always is, and with changed copies alone no other. The model of sequences
+// is fit to what a Bayes filter believes of the truth, over trials whose places follow each other
+// and were seen by other laps; without any such it is the default. Throws Error without a trial
+// that lies on the route.
 Calibration Calibrate(const Route& route, std::span<const Trial> trials);
 
 // Threshold for a wanted precision in [0, 1): the first of the table that promises as much, 1 where

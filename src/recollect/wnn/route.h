@@ -12,7 +12,7 @@ namespace recollect::wnn {
 struct Route {
   std::vector<int> next;                 // by place: the one ahead on the same lap, -1: none
   std::vector<int> before;               // the one behind it, -1: none
-  std::vector<std::vector<int>> beside;  // the same place as other laps have it
+  std::vector<std::vector<int>> beside;  // the same place as other laps or passes have it
 
   int places() const { return static_cast<int>(next.size()); }
   // Whether b is a, lies beside it, or is one ahead of or behind either.

@@ -79,20 +79,57 @@ TEST(Sequence, TheFilterFindsItselfAgainElsewhere) {
   EXPECT_TRUE(route.WithinOne(found.place, 59));
 }
 
-TEST(Sequence, BoundedHistoryForgets) {
-  const Route route = ChainRoute(kPlaces);
-  const auto bounded = MakeSequence({.filter = Filter::kBayes, .history = 5}, route);
-  const auto fresh = MakeSequence({.filter = Filter::kBayes, .history = 5}, route);
-  Random random(5);
-  for (int image = 0; image < 20; ++image) {
-    const auto histogram = Votes(image, random);
-    const auto belief = bounded->Update({histogram, kNeurons, {}, {}});
-    if (image < 15) continue;
-    const auto other = fresh->Update({histogram, kNeurons, {}, {}});
-    if (image == 19) {
-      EXPECT_EQ(belief, other);
-    }
+double BeliefNear(const Route& route, const std::vector<double>& belief, int truth) {
+  double sum = 0;
+  for (int place = 0; place < route.places(); ++place) {
+    if (route.WithinOne(truth, place)) sum += belief[static_cast<std::size_t>(place)];
   }
+  return sum;
+}
+
+TEST(Sequence, ManyImagesAPlaceDoNotHurryTheFilterOn) {
+  const Route route = ChainRoute(kPlaces);
+  for (const int history : {0, 10}) {
+    double near = 0;
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const auto filter = MakeSequence({.filter = Filter::kBayes, .history = history}, route);
+      Random random(seed);
+      for (int image = 0; image < 8 * 50; ++image) {
+        const int truth = 4 + image / 8;
+        const auto belief = filter->Update({Votes(truth, random), kNeurons, {}, {}});
+        if (image < 9) continue;
+        near += BeliefNear(route, belief, truth);
+        ++count;
+      }
+    }
+    EXPECT_GT(near / count, history == 0 ? 0.96 : 0.94) << "history " << history;
+  }
+}
+
+TEST(Sequence, BoundedHistoryForgetsPlacesAndRemembersSpeed) {
+  const Route route = ChainRoute(kPlaces);
+  const SequenceOptions options{.filter = Filter::kBayes, .history = 5};
+  const auto known = MakeSequence(options, route), elsewhere = MakeSequence(options, route);
+  const auto fresh = MakeSequence(options, route);
+  Random random(5);
+  std::vector<double> of_known, of_elsewhere, of_fresh;
+  const std::vector<LabelVotes> nothing = {{0, 1}};
+  for (int image = 0; image < 30; ++image) {
+    auto histogram = Votes(20 + image, random);
+    auto far = image < 25 ? Votes(5 + image, random) : histogram;
+    if (image >= 28) histogram = far = nothing;
+    of_known = known->Update({histogram, kNeurons, {}, {}});
+    of_elsewhere = elsewhere->Update({far, kNeurons, {}, {}});
+    if (image >= 25) of_fresh = fresh->Update({histogram, kNeurons, {}, {}});
+  }
+  for (std::size_t i = 0; i < of_known.size(); ++i) {
+    EXPECT_NEAR(of_known[i], of_elsewhere[i], 0.05) << i;
+  }
+  EXPECT_GT(BeliefNear(route, of_known, 49), BeliefNear(route, of_fresh, 49) + 0.1);
+  known->Reset();
+  EXPECT_EQ(known->Update({nothing, kNeurons, {}, {}}),
+            MakeSequence(options, route)->Update({nothing, kNeurons, {}, {}}));
 }
 
 TEST(Sequence, OdometryTellsTwinsApart) {
@@ -199,6 +236,46 @@ TEST(Calibration, ProbabilitiesAreThoseOfNewImages) {
   EXPECT_LT(threshold, 1);
   EXPECT_EQ(ThresholdFor(calibration, 0.9999), 1);
   EXPECT_THROW(Calibrate(route, {}), Error);
+}
+
+TEST(Calibration, ChangedCopiesOfOneLapCountLess) {
+  const Route route = ChainRoute(kPlaces);
+  // Of answers as clear as can be, half are wrong.
+  const auto make = [&](bool copy) {
+    std::vector<Trial> trials;
+    for (int i = 0; i < 200; ++i) {
+      const int truth = i % kPlaces, told = i % 2 == 0 ? truth : (truth + 30) % kPlaces;
+      Trial trial{{{told, 60}}, kNeurons, {}, {}, truth, copy};
+      for (int p = 0; p < kPlaces; ++p) {
+        if (route.WithinOne(truth, p)) trial.right.push_back(p);
+      }
+      trials.push_back(trial);
+    }
+    return Calibrate(route, trials);
+  };
+  const std::vector<LabelVotes> clear = {{7, 60}};
+  const auto sure = [&](const Calibration& calibration) {
+    return Judge(calibration, route, clear, kNeurons).probability;
+  };
+  EXPECT_GT(sure({}), 0.99);
+  EXPECT_LT(sure(make(true)), 0.9);
+  EXPECT_GT(sure(make(true)), sure(make(false)) + 0.1);
+  EXPECT_NEAR(sure(make(false)), 0.5, 0.05);
+}
+
+TEST(Calibration, ARivalElsewhereAndFewVotesMakeUnsure) {
+  const Route route = ChainRoute(kPlaces);
+  const auto sure = [&](const std::vector<LabelVotes>& votes) {
+    const Judged judged = Judge({}, route, votes, kNeurons);
+    EXPECT_EQ(judged.place, 7);
+    return judged.probability;
+  };
+  const double clear = sure({{7, 40}, {30, 5}});
+  EXPECT_GT(clear, 0.95);
+  EXPECT_NEAR(sure({{7, 40}, {6, 35}, {30, 5}}), clear, 0.03);  // beside it: no rival
+  EXPECT_LT(sure({{7, 40}, {30, 38}}), clear - 0.05);
+  EXPECT_LT(sure({{7, 8}, {30, 1}}), clear - 0.05);
+  EXPECT_EQ(Judge({}, route, {}, kNeurons).place, -1);
 }
 
 TEST(Calibration, ImagesThatGoWrongTogetherTellLessInASequence) {
