@@ -19,6 +19,7 @@ constexpr double kNowhere = 0.03;   // what an image from nowhere counts beside 
 constexpr double kCopy = 0.01;      // a changed copy of a mapped image beside another lap's
 constexpr double kPrior = 0.1;      // pull of the weights towards their default, in trials
 constexpr double kVote = 0.01;      // share of the neurons that any place is granted for its rival
+constexpr double kDoubt = 4;  // times the wanted share of wrong answers that one kept may be unsure
 
 double Sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
 
@@ -142,7 +143,9 @@ double Apply(const Calibration& calibration, const Eigen::Vector3d& x) {
          Sigmoid(Eigen::Map<const Eigen::Vector3d>(calibration.here.data()).dot(x));
 }
 
-// `found`: probabilities of trials of the route, and whether they were right; `nowhere`: of others.
+// `found`: probabilities of trials of the route, and whether they were right; `nowhere`: of others,
+// seen by the same camera on the same road: strangers can look surer, so these alone lower nothing
+// without end.
 double Threshold(double precision, const std::vector<std::pair<double, bool>>& found,
                  const std::vector<double>& nowhere) {
   const double allowed = std::ceil((1 - precision) * static_cast<double>(nowhere.size()));
@@ -156,7 +159,7 @@ double Threshold(double precision, const std::vector<std::pair<double, bool>>& f
     if (static_cast<double>(strangers) > allowed) break;
     if (correct >= precision * kept) threshold = std::min(threshold, p);
   }
-  return threshold;
+  return std::max(threshold, 1 - kDoubt * (1 - precision));
 }
 
 }  // namespace

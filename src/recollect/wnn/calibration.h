@@ -48,7 +48,8 @@ Judged Judge(const Calibration& calibration, const Route& route,
 // it to these and those from nowhere (two logistic regressions), both drawn to the default: trials
 // of one lap's changed copies hardly move it. Thresholds: at each, so many of the answers kept are
 // right and at most the rest of the images from nowhere are kept; but an image that is itself given
-// the wanted probability always is, and with changed copies alone no other. The model of sequences
+// the wanted probability always is, with changed copies alone no other, and one with more than four
+// times the wanted doubt never is. The model of sequences
 // is fit to what a Bayes filter believes of the truth, over trials whose places follow each other
 // and were seen by other laps; without any such it is the default. Throws Error without a trial
 // that lies on the route.

@@ -263,6 +263,20 @@ TEST(Calibration, ChangedCopiesOfOneLapCountLess) {
   EXPECT_NEAR(sure(make(false)), 0.5, 0.05);
 }
 
+// However well all trials go, who wants 99 % keeps nothing that is more than 4 % unsure.
+TEST(Calibration, EasyTrialsProveNoLowThreshold) {
+  const Route route = ChainRoute(kPlaces);
+  std::vector<Trial> trials;
+  for (int i = 0; i < 400; ++i) {
+    const int truth = i % kPlaces;
+    const std::vector<LabelVotes> dull = {{truth, 8 + i % 6}, {(truth + 30) % kPlaces, 7}};
+    trials.push_back({dull, kNeurons, {truth}, {truth}, truth});
+    trials.push_back({{{truth, 7}, {(truth + 30) % kPlaces, 7}}, kNeurons, {}, {}});  // nowhere
+  }
+  const Calibration calibration = Calibrate(route, trials);
+  EXPECT_DOUBLE_EQ(ThresholdFor(calibration, 0.99), 0.96);
+}
+
 TEST(Calibration, ARivalElsewhereAndFewVotesMakeUnsure) {
   const Route route = ChainRoute(kPlaces);
   const auto sure = [&](const std::vector<LabelVotes>& votes) {
