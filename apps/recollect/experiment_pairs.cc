@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "laps.h"
 #include "recollect/cnn/fused_errors.h"
+#include "recollect/cnn/second_pass.h"
 
 namespace recollect::app {
 namespace {
@@ -17,7 +18,7 @@ struct PairsFlags {
   LapFlags laps;
   cnn::PairOptions pairs;
   int fuse = 0;  // key frames whose answers are fused; 0: none
-  bool half = false;
+  bool half = false, second_pass = false;
 };
 
 void RunPairs(const PairsFlags& flags) {
@@ -63,6 +64,16 @@ void RunPairs(const PairsFlags& flags) {
                  fused.heading_p95_deg, fused.pairs);
     }
   }
+  if (flags.second_pass) {
+    const cnn::PairFigures twice = cnn::EvaluateSecondPass(network, data, progress).Figures();
+    json["second_pass"] = nlohmann::json::parse(cnn::ToJson(twice));
+    fmt::print(
+        "asked again, of the key frame nearest to the first answer\n"
+        "position     {:6.3f} m   {:6.3f} m   {:6.3f} m\n"
+        "heading      {:6.2f} deg {:6.2f} deg {:6.2f} deg\n",
+        twice.position_mean_m, twice.position_median_m, twice.position_p95_m,
+        twice.heading_mean_deg, twice.heading_median_deg, twice.heading_p95_deg);
+  }
   WriteFigures(flags.common, json);
 }
 
@@ -79,6 +90,8 @@ void AddExperimentPairs(CLI::App& experiment) {
   command
       ->add_option("--distance", flags->pairs.max_distance_m, "metres between two frames at most")
       ->capture_default_str();
+  command->add_flag("--second-pass", flags->second_pass,
+                    "errors also of asking again, of the key frame nearest to the first answer");
   command->add_flag("--bf16", flags->half, "answer in bfloat16");
   command->add_option("--key-spacing", flags->pairs.key_spacing_m,
                       "metres between key frames; 0: all frames are key frames");
