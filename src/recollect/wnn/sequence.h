@@ -38,7 +38,9 @@ struct VoteModel {
 
 struct SequenceOptions {
   Filter filter = Filter::kBayes;
-  int history = 10;  // images that count, the present one among them; 0 (kBayes only): all
+  // Images that count, the present one among them; 0 (kBayes only): all. Of what was before them
+  // kBayes remembers how fast one usually moves, and no place.
+  int history = 10;
   VoteModel votes = {};
   double jump = 1e-3;       // chance to be anywhere at all at the next image
   double change_lap = 0.1;  // chance to follow, from here on, another lap through this place
