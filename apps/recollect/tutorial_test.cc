@@ -8,6 +8,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -33,8 +34,7 @@ TEST(Tutorial, CommandsLeadToAReport) {
   if (!fs::exists(fs::path(RECOLLECT_BUILD) / "report.html")) {
     GTEST_SKIP() << "the page of reports was not built (apt-get install nodejs npm; make build)";
   }
-  const fs::path folder = fs::path(::testing::TempDir()) / "recollect_tutorial";
-  fs::remove_all(folder);
+  const testing::ScratchFolder folder;
   for (int lap = 1; lap <= 2; ++lap) {
     const fs::path drive = folder / "my-laps" / fmt::format("lap-{}", lap);
     testing::DriveStreet(
@@ -48,10 +48,11 @@ TEST(Tutorial, CommandsLeadToAReport) {
   ASSERT_GE(commands.size(), 2u);
   ASSERT_LE(commands.size(), 5u);
   EXPECT_EQ(commands.front(), "make build");  // what made this test; only that it is there
-  EXPECT_EQ(Shell("true", folder), 0);
+  EXPECT_EQ(Shell("true", folder.path()), 0);
   EXPECT_EQ(std::system("make --dry-run build >/dev/null 2>&1"), 0);
   for (std::size_t i = 1; i < commands.size(); ++i) {
-    EXPECT_EQ(Shell(commands[i], folder), 0) << commands[i] << '\n' << ReadFile(folder / "log");
+    EXPECT_EQ(Shell(commands[i], folder.path()), 0) << commands[i] << '\n'
+                                                    << ReadFile(folder / "log");
   }
   EXPECT_GT(fs::file_size(folder / "my-report" / "report.html"), 100'000u);
   const auto run = nlohmann::json::parse(ReadFile(folder / "my-report" / "run.json"));
@@ -59,7 +60,6 @@ TEST(Tutorial, CommandsLeadToAReport) {
   EXPECT_EQ(run["frames"]["frame"].size(), 24u);
   const std::string log = ReadFile(folder / "log");
   EXPECT_NE(log.find("key frame"), std::string::npos) << log;  // localize's answer
-  fs::remove_all(folder);
 }
 
 }  // namespace

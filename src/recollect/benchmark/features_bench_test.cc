@@ -7,14 +7,15 @@
 #include <opencv2/core/utility.hpp>
 
 #include "recollect/core/error.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
 namespace {
 
 TEST(FeaturesBench, WritesEveryFigure) {
-  const auto folder = std::filesystem::temp_directory_path() / "recollect_features_bench";
-  const Lap lap = testing::DriveStreet(folder, {});
+  const testing::ScratchFolder folder;
+  const Lap lap = testing::DriveStreet(folder.path(), {});
   const int threads = cv::getNumThreads();
   const nlohmann::json figures = RunFeaturesBench(lap, {.images = 3});
   cv::setNumThreads(threads);
@@ -26,7 +27,6 @@ TEST(FeaturesBench, WritesEveryFigure) {
   for (const char* step : {"blur", "match"}) EXPECT_GT(figures["share_of_peak"][step], 0) << step;
   EXPECT_FALSE(DescribeFeaturesBench(figures).empty());
   EXPECT_THROW(RunFeaturesBench(Lap{}), Error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -6,14 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "recollect/core/error.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
 namespace {
 
 TEST(RecognitionBench, WritesEveryFigure) {
-  const auto folder = std::filesystem::temp_directory_path() / "recollect_recognition_bench";
-  const Lap lap = testing::DriveStreet(folder, {});
+  const testing::ScratchFolder folder;
+  const Lap lap = testing::DriveStreet(folder.path(), {});
   const PlaceImages places = ReadPlaces({lap}, 5);
   const nlohmann::json figures = RunRecognitionBench(places, lap, {.images = 2, .threads = 2});
   EXPECT_EQ(figures["key_frames"], places.images.size());
@@ -26,7 +27,6 @@ TEST(RecognitionBench, WritesEveryFigure) {
   EXPECT_GT(figures["ratio"]["time"], 0);
   EXPECT_NE(DescribeRecognitionBench(figures).find("recollect"), std::string::npos);
   EXPECT_THROW(RunRecognitionBench(places, Lap{}), Error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,34 +1,28 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect::cnn {
 
-// A folder of this process with laps of the test street in it, removed at the end.
+// Laps of the test street, in a folder of their own.
 class TestStreet {
  public:
-  explicit TestStreet(const std::vector<testing::StreetDrive>& drives)
-      : folder_(std::filesystem::temp_directory_path() /
-                ("recollect_cnn_" + std::to_string(getpid()))) {
+  explicit TestStreet(const std::vector<testing::StreetDrive>& drives) {
     for (std::size_t i = 0; i < drives.size(); ++i) {
       laps_.push_back(testing::DriveStreet(folder_ / ("lap-" + std::to_string(i)), drives[i]));
     }
   }
-  ~TestStreet() { std::filesystem::remove_all(folder_); }
-  TestStreet(const TestStreet&) = delete;
-  TestStreet& operator=(const TestStreet&) = delete;
 
   const std::vector<Lap>& laps() const { return laps_; }
   std::filesystem::path File(const std::string& name) const { return folder_ / name; }
 
  private:
-  std::filesystem::path folder_;
+  testing::ScratchFolder folder_;
   std::vector<Lap> laps_;
 };
 

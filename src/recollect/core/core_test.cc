@@ -10,6 +10,7 @@
 #include "recollect/core/instructions.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/random.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -80,8 +81,7 @@ TEST(ThreadPool, RethrowsAndStaysUsable) {
 
 TEST(AtomicWrite, ReplacesWholeFilesOrLeavesTheOldOne) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / "recollect_atomic_write";
-  fs::remove_all(folder);
+  const testing::ScratchFolder folder;
   const fs::path file = folder / "deep" / "figures.json";
   AtomicWrite(file, "one");
   AtomicWrite(file, "two");
@@ -96,7 +96,7 @@ TEST(AtomicWrite, ReplacesWholeFilesOrLeavesTheOldOne) {
   EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()), 1);
   EXPECT_THROW(AtomicWrite(file.parent_path(), "x"), Error);
   EXPECT_THROW(AtomicWrite("/proc/recollect/x", "x"), Error);
-  EXPECT_THROW(ReadFile(folder), Error);
+  EXPECT_THROW(ReadFile(folder.path()), Error);
   EXPECT_THROW(ReadFile(folder / "missing"), Error);
 }
 

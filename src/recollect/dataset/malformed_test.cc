@@ -235,7 +235,7 @@ std::vector<Case> Cases() {
   };
 }
 
-class Malformed : public testing::TestWithParam<Case> {};
+class Malformed : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Malformed, IsRefusedInOneLine) {
   const Case& c = GetParam();
@@ -257,7 +257,7 @@ TEST_P(Malformed, IsRefusedInOneLine) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(DataSets, Malformed, testing::ValuesIn(Cases()),
+INSTANTIATE_TEST_SUITE_P(DataSets, Malformed, ::testing::ValuesIn(Cases()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(MalformedFormat, NameIsRefused) {

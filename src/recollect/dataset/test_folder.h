@@ -1,7 +1,5 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -9,37 +7,27 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "recollect/testing/scratch_folder.h"
+
 namespace recollect {
 
-// A folder for one test, gone with it, and small data sets to put there.
-class TestFolder {
+// A folder for one test and small data sets to put there.
+class TestFolder : public testing::ScratchFolder {
  public:
-  TestFolder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("recollect-test-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
   void Write(const std::string& file, const std::string& content) const {
-    std::filesystem::create_directories((path_ / file).parent_path());
-    std::ofstream(path_ / file, std::ios::binary) << content;
+    std::filesystem::create_directories((path() / file).parent_path());
+    std::ofstream(path() / file, std::ios::binary) << content;
   }
   std::string Read(const std::string& file) const {
-    std::ifstream in(path_ / file, std::ios::binary);
+    std::ifstream in(path() / file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   // An image of the given size and OpenCV type, all pixels 7; its kind is told by its name.
   void WriteImage(const std::string& file, int width, int height, int type = CV_8UC3) const {
-    std::filesystem::create_directories((path_ / file).parent_path());
-    cv::imwrite(path_ / file, cv::Mat(height, width, type, cv::Scalar::all(7)));
+    std::filesystem::create_directories((path() / file).parent_path());
+    cv::imwrite(path() / file, cv::Mat(height, width, type, cv::Scalar::all(7)));
   }
-  void Remove(const std::string& file) const { std::filesystem::remove_all(path_ / file); }
+  void Remove(const std::string& file) const { std::filesystem::remove_all(path() / file); }
   // The first occurrence of `old` in a file becomes `now`.
   void Replace(const std::string& file, const std::string& old, const std::string& now) const {
     std::string content = Read(file);
@@ -92,9 +80,6 @@ class TestFolder {
     WriteImage("20160825/a.l.png", 16, 12);
     WriteImage("20160825/b.l.png", 16, 12);
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 }  // namespace recollect

@@ -1,8 +1,6 @@
 #include "recollect/depth/lap_depth.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -15,6 +13,7 @@
 #include "recollect/dataset/reader.h"
 #include "recollect/depth/evaluate.h"
 #include "recollect/depth/test_pairs.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect::stereo {
 namespace {
@@ -26,7 +25,6 @@ constexpr int kWidth = 240, kHeight = 160;
 class LapDepth : public ::testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
     options_.sgm.disparities = 32;
     options_.sps.superpixels = 40;
     const testing::Pair pair = testing::Surface(kWidth, kHeight, [](int, int) { return 12; });
@@ -41,14 +39,13 @@ class LapDepth : public ::testing::Test {
     AtomicWrite(folder_ / "calib.txt",
                 "P2: 200 0 120 0 0 200 80 0 0 0 1 0\nP3: 200 0 120 -60 0 200 80 0 0 0 1 0\n");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   fs::path Image(const char* kind, int i) const {
     return folder_ / kind / fmt::format("{:06}.png", i);
   }
   LapDepthResult Write(int threads = 2) {
     ThreadPool pool(threads);
-    return WriteLapDepth(ReadLap(folder_), folder_ / "depth", options_, pool);
+    return WriteLapDepth(ReadLap(folder_.path()), folder_ / "depth", options_, pool);
   }
   std::string Failure() {
     try {
@@ -59,8 +56,7 @@ class LapDepth : public ::testing::Test {
     return "";
   }
 
-  fs::path folder_ =
-      fs::temp_directory_path() / fmt::format("recollect_lap_depth_{}", static_cast<int>(getpid()));
+  recollect::testing::ScratchFolder folder_;
   MatchOptions options_;
 };
 
@@ -69,7 +65,7 @@ TEST_F(LapDepth, MakesDepthForFramesWithARightImage) {
   EXPECT_EQ(result.made, 2);
   EXPECT_EQ(result.without_right, 1);
   EXPECT_TRUE(result.warnings.empty());
-  const Lap lap = ReadLap(folder_);
+  const Lap lap = ReadLap(folder_.path());
   EXPECT_TRUE(lap.frames[1].depth.empty());
   const cv::Mat depth = ReadDepth(lap.frames[2].depth, lap.depth_unit);
   EXPECT_EQ(cv::countNonZero(depth), kWidth * kHeight);
@@ -130,7 +126,7 @@ TEST_F(LapDepth, RefusesSwappedImages) {
 TEST_F(LapDepth, EvaluationFindsItsOwnDepthRight) {
   Write();
   ThreadPool pool(2);
-  const DepthEvaluation result = EvaluateDepth(ReadLap(folder_), options_, 1, pool);
+  const DepthEvaluation result = EvaluateDepth(ReadLap(folder_.path()), options_, 1, pool);
   EXPECT_EQ(result.frames, 2);
   ASSERT_EQ(result.methods.size(), 3U);
   EXPECT_EQ(result.methods[0].errors.density, 1);

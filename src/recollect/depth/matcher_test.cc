@@ -11,6 +11,7 @@
 #include "recollect/depth/disparity.h"
 #include "recollect/depth/evaluate.h"
 #include "recollect/depth/test_pairs.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect::stereo {
 namespace {
@@ -63,7 +64,8 @@ TEST(Disparity, DepthSurvivesTheFile) {
   const cv::Mat disparity = (cv::Mat_<float>(1, 5) << kUnknown, 0, 0.1F, 11.75F, 117.4656F);
   const cv::Mat depth = DepthFromDisparity(disparity, camera);
   EXPECT_EQ(depth.at<float>(0, 1), std::numeric_limits<float>::infinity());
-  const auto path = std::filesystem::temp_directory_path() / "recollect_depth_round_trip.png";
+  const recollect::testing::ScratchFolder folder;
+  const auto path = folder / "depth.png";
   WriteDepth(path, depth);
   const ImageInfo info = ReadImageInfo(path);
   EXPECT_EQ(info.bits, 16);
@@ -71,7 +73,6 @@ TEST(Disparity, DepthSurvivesTheFile) {
   const cv::Mat back = ReadDepth(path);
   const float expected[] = {0, 655.35F, 655.35F, 10.00F, 1.00F};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(back.at<float>(0, i), expected[i], 0.006) << i;
-  std::filesystem::remove(path);
 }
 
 TEST(Disparity, TruthTellsWhatTheRightCameraSees) {

@@ -1,17 +1,17 @@
 #include "recollect/depth/motion.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "recollect/core/error.h"
 #include "recollect/dataset/image.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -20,17 +20,17 @@ namespace {
 class MotionDepth : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    lap_ = new Lap(testing::DriveStreet(std::filesystem::temp_directory_path() /
-                                            ("recollect_motion_depth_" + std::to_string(getpid())),
-                                        {.length_m = 8}));
+    folder_.emplace();
+    lap_ = new Lap(testing::DriveStreet(folder_->path(), {.length_m = 8}));
   }
   static void TearDownTestSuite() {
-    std::filesystem::remove_all(lap_->folder);
+    folder_.reset();
     delete lap_;
   }
   static SE3 Between(std::size_t to, std::size_t from) {
     return lap_->WorldFromCamera(to).Inverse() * lap_->WorldFromCamera(from);
   }
+  inline static std::optional<testing::ScratchFolder> folder_;
   static Lap* lap_;
 };
 Lap* MotionDepth::lap_ = nullptr;

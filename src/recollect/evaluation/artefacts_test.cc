@@ -5,6 +5,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
 #include "recollect/evaluation/data_hash.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -14,12 +15,9 @@ using nlohmann::json;
 
 class ArtefactsTest : public ::testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // Does one step that counts how often it is done, and leaves a file.
   json Do(const RunStamp& stamp, const json& inputs = {{"spacing", 5}}) {
-    Artefacts artefacts(folder_, stamp);
+    Artefacts artefacts(folder_.path(), stamp);
     return artefacts.Step("map", inputs,
                           [&] {
                             AtomicWrite(artefacts.Path("map.bin"), "bytes");
@@ -28,7 +26,7 @@ class ArtefactsTest : public ::testing::Test {
                           {"map.bin"});
   }
 
-  const fs::path folder_ = fs::path(::testing::TempDir()) / "recollect_artefacts";
+  const testing::ScratchFolder folder_;
   RunStamp stamp_{"recollect x", 1, {{"recollect", "0.1"}}, "abc"};
   int done_ = 0;
 };
@@ -72,7 +70,7 @@ TEST(Hash, IsFnv1a) {
 }
 
 TEST_F(ArtefactsTest, NothingIsLeftOfAStepThatFails) {
-  Artefacts artefacts(folder_, stamp_);
+  Artefacts artefacts(folder_.path(), stamp_);
   EXPECT_THROW(artefacts.Step("map", {}, []() -> json { throw std::runtime_error("no"); }, {}),
                std::runtime_error);
   EXPECT_FALSE(fs::exists(folder_ / "map.json"));

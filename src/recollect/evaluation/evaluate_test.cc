@@ -17,6 +17,7 @@
 #include "recollect/evaluation/report.h"
 #include "recollect/evaluation/trust.h"
 #include "recollect/matching/mapped.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -43,20 +44,16 @@ TEST(Compare, MeasuresCentresAndWhereCamerasLook) {
 class EvaluateTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) / "recollect_evaluate" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
     mapped_ = {testing::DriveStreet(folder_ / "lap-01", {.length_m = 30, .seed = 1})};
     live_ = testing::DriveStreet(folder_ / "lap-02", {.length_m = 20, .lateral_m = 0.3, .seed = 2});
     CreateMap(folder_ / "m.map", mapped_, {}, pool_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   Localizer Untrained(const Map& map) {
     return {map, cnn::PoseNetwork::Untrained(320, 240), pool_};
   }
 
-  fs::path folder_;
+  testing::ScratchFolder folder_;
   ThreadPool pool_{2};
   std::vector<Lap> mapped_;
   Lap live_;

@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "recollect/core/error.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -50,12 +51,12 @@ TEST(Explanation, ThePictureIsLitWhereNeuronsVoted) {
 }
 
 TEST(Explanation, IsWrittenAsItsEndingSays) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / "explanation.png";
+  const testing::ScratchFolder folder;
+  const auto file = folder / "explanation.png";
   WriteExplanation(file, cv::Mat(4, 6, CV_8UC3, cv::Scalar(1, 2, 3)));
   const cv::Mat read = cv::imread(file.string());
   EXPECT_EQ(read.size(), cv::Size(6, 4));
   EXPECT_EQ(read.at<cv::Vec3b>(0, 0), cv::Vec3b(1, 2, 3));
-  std::filesystem::remove(file);
 }
 
 }  // namespace

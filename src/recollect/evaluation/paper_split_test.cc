@@ -4,6 +4,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -46,8 +47,7 @@ TEST(ChooseSplit, IsThePapersForItsRecordings) {
 }
 
 TEST(ChooseSplit, KnowsRenderedLapsOfTheRouteByWhatTheySay) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "recollect_split";
-  fs::remove_all(folder);
+  const testing::ScratchFolder folder;
   auto laps = Named({"lap-01", "lap-04", "lap-05", "lap-07"});
   EXPECT_EQ(ChooseSplit(laps).map, (Laps{0, 1, 2}));
   for (Lap& lap : laps) {
@@ -61,7 +61,6 @@ TEST(ChooseSplit, KnowsRenderedLapsOfTheRouteByWhatTheySay) {
   EXPECT_EQ(split.train, (Laps{0, 2}));
   EXPECT_EQ(split.valid, 1u);
   EXPECT_EQ(split.test, 3u);
-  fs::remove_all(folder);
 }
 
 TEST(ChooseSplit, TakesNamesAndNumbers) {

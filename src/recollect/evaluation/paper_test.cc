@@ -9,6 +9,7 @@
 #include "recollect/core/files.h"
 #include "recollect/evaluation/html_report.h"
 #include "recollect/evaluation/thumbnails.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -16,24 +17,24 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const fs::path kFolder = fs::path(::testing::TempDir()) / "recollect_paper";
-
 TEST(RunPaper, AsksBeforeAnyWork) {
   std::vector<Lap> laps(2);
   laps[0].name = "a";
   laps[1].name = "b";
   PaperOptions options;
-  options.out = kFolder;
+  const testing::ScratchFolder folder;
+  options.out = folder / "out";
   EXPECT_THROW(RunPaper(laps, options), Error);  // rendered or real?
   options.images = "real";
   EXPECT_THROW(RunPaper(laps, options), Error);  // no images
   options.laps.test = "c";
   EXPECT_THROW(RunPaper(laps, options), Error);  // no such lap
-  EXPECT_FALSE(fs::exists(kFolder));
+  EXPECT_FALSE(fs::exists(options.out));
 }
 
 TEST(ReadCurve, TakesTheTrainersFilesOldAndNew) {
-  const fs::path file = kFolder / "curve.csv";
+  const testing::ScratchFolder folder;
+  const fs::path file = folder / "curve.csv";
   AtomicWrite(file, "step,epoch,loss,valid_position_m\n100,0.1,4,2.5\n200,0.2,3,2\n");
   const auto old = ReadCurve(file);
   ASSERT_EQ(old.size(), 2u);
@@ -46,7 +47,6 @@ TEST(ReadCurve, TakesTheTrainersFilesOldAndNew) {
   EXPECT_THROW(ReadCurve(file), Error);
   AtomicWrite(file, "step,loss,valid_position_m\n100,4\n");
   EXPECT_THROW(ReadCurve(file), Error);
-  fs::remove_all(kFolder);
 }
 
 TEST(Thumbnail, FitsIntoItsBytes) {
@@ -64,7 +64,8 @@ TEST(Thumbnail, FitsIntoItsBytes) {
 }
 
 TEST(WriteHtmlReport, PutsDataWhereThePageLooksForThem) {
-  const fs::path page = kFolder / "template.html", file = kFolder / "report.html";
+  const testing::ScratchFolder folder;
+  const fs::path page = folder / "template.html", file = folder / "report.html";
   const std::string empty =
       "<script id=\"report-data\">null</script><script id=\"report-images\">null</script>";
   AtomicWrite(page, empty);
@@ -81,7 +82,6 @@ TEST(WriteHtmlReport, PutsDataWhereThePageLooksForThem) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("npm"), std::string::npos);
   }
-  fs::remove_all(kFolder);
 }
 
 }  // namespace

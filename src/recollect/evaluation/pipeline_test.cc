@@ -11,6 +11,7 @@
 #include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
 #include "recollect/evaluation/report.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -26,8 +27,7 @@ const Row& Find(const std::vector<Row>& rows, const std::string& name) {
 }
 
 TEST(Pipeline, LocalisesALapThatWasNotMapped) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "recollect_pipeline";
-  fs::remove_all(folder);
+  const testing::ScratchFolder folder;
   using testing::DriveStreet;
   const std::vector<Lap> mapped = {
       DriveStreet(folder / "lap-01", {.lateral_m = 0.6, .seed = 1}),
@@ -63,7 +63,6 @@ TEST(Pipeline, LocalisesALapThatWasNotMapped) {
   EXPECT_DOUBLE_EQ(figures["position_m"]["retrieval"]["mean"].get<double>(),
                    Find(evaluation.rows, "retrieval").position_m.mean);
   EXPECT_GT(fs::file_size(folder / "report" / "evaluation.png"), 10000u);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -23,8 +24,7 @@ TEST(PlaceAccuracy, CountsPlacesAndImages) {
 }
 
 TEST(PlaceAccuracy, OfAStreetDrivenTwiceIsThatOfItsPoses) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "recollect_place_accuracy";
-  fs::remove_all(folder);
+  const testing::ScratchFolder folder;
   const std::vector<Lap> laps = {
       testing::DriveStreet(folder / "a", {.length_m = 30, .seed = 1}),
       testing::DriveStreet(folder / "b", {.length_m = 30, .lateral_m = 0.4, .seed = 2})};
@@ -44,11 +44,11 @@ TEST(PlaceAccuracy, OfAStreetDrivenTwiceIsThatOfItsPoses) {
       PlacesOff(AnswerPlaces(network, task.learnt, task.live, 1, pool), task.live.labels);
   EXPECT_GE(std::count(off.begin(), off.end(), 0), 12);
   EXPECT_THROW(AnswerPlaces(network, {}, task.live, 1, pool), Error);
-  fs::remove_all(folder);
 }
 
 TEST(ReadRegistration, HeadsWhereTheDriveGoes) {
-  const fs::path file = fs::path(::testing::TempDir()) / "registration.txt";
+  const testing::ScratchFolder folder;
+  const fs::path file = folder / "registration.txt";
   AtomicWrite(file, "# x y z\n0 0 0\n0 2 0\n-3 2 0\n");
   const Lap lap = ReadRegistration(file);
   ASSERT_EQ(lap.frames.size(), 3u);
@@ -57,7 +57,6 @@ TEST(ReadRegistration, HeadsWhereTheDriveGoes) {
   EXPECT_LT((Heading(lap, 2) - Eigen::Vector3d(-1, 0, 0)).norm(), 1e-12);
   AtomicWrite(file, "1 2 3\n4 5\n");
   EXPECT_THROW(ReadRegistration(file), Error);
-  fs::remove(file);
 }
 
 }  // namespace

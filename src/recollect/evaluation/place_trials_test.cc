@@ -3,27 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "recollect/core/parallel.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A street mapped once, every five metres.
 class PlaceTrialsTest : public ::testing::Test {
  protected:
-  static Lap Drive(const std::string& name, const testing::StreetDrive& drive) {
-    const fs::path folder = fs::path(::testing::TempDir()) / "recollect_place_trials" / name;
-    fs::remove_all(folder);
-    return testing::DriveStreet(folder, drive);
-  }
-
+  testing::ScratchFolder folder_;
   ThreadPool pool_{2};
-  PlaceImages places_ = ReadPlaces({Drive("a", {.length_m = 60, .seed = 1})}, 5);
+  PlaceImages places_ =
+      ReadPlaces({testing::DriveStreet(folder_ / "a", {.length_m = 60, .seed = 1})}, 5);
   LearntPlaces learnt_{places_, wnn::RecollectNetwork(), pool_};
 };
 
@@ -47,7 +41,8 @@ TEST_F(PlaceTrialsTest, AChangedCopyMayFindItsOwnImageUnlessLeftOut) {
 }
 
 TEST_F(PlaceTrialsTest, AnswersTellHowSureTheyAreAndWhetherTheyAreRight) {
-  const Lap live = Drive("b", {.length_m = 50, .lateral_m = 0.3, .seed = 2});
+  const Lap live =
+      testing::DriveStreet(folder_ / "b", {.length_m = 50, .lateral_m = 0.3, .seed = 2});
   const wnn::Calibration calibration = wnn::Calibrate(places_.route, learnt_.Trials(pool_));
   const auto answers = AnswerLive(learnt_, live, 2, {.history = 0, .votes = calibration.sequence},
                                   calibration, pool_);

@@ -9,6 +9,7 @@
 #include "recollect/dataset/image.h"
 #include "recollect/localization/localizer.h"
 #include "recollect/map/trials.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -20,15 +21,11 @@ namespace fs = std::filesystem;
 class RefusalTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) / "recollect_refusal" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
     const std::vector<Lap> mapped = {
         testing::DriveStreet(folder_ / "a", {.length_m = 60, .seed = 1}),
         testing::DriveStreet(folder_ / "b", {.length_m = 60, .lateral_m = 0.4, .seed = 2})};
     CreateMap(folder_ / "m.map", mapped, {}, pool_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   Localizer With(const Map& map, std::optional<double> precision) {
     LocalizerOptions options;
@@ -38,7 +35,7 @@ class RefusalTest : public ::testing::Test {
     return {map, cnn::PoseNetwork::Untrained(320, 240), pool_, options};
   }
 
-  fs::path folder_;
+  testing::ScratchFolder folder_;
   ThreadPool pool_{2};
 };
 

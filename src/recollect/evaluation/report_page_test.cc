@@ -13,6 +13,7 @@
 #include "recollect/evaluation/html_report.h"
 #include "recollect/evaluation/paper.h"
 #include "recollect/evaluation/thumbnails.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -30,9 +31,6 @@ class ReportPageTest : public ::testing::Test {
         GTEST_SKIP() << needed << " is missing (apt-get install nodejs npm chromium; make build)";
       }
     }
-    folder_ = fs::path(::testing::TempDir()) / "recollect_page" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
     for (int lap = 1; lap <= 3; ++lap) {
       laps_.push_back(testing::DriveStreet(
           folder_ / "laps" / fmt::format("lap-0{}", lap),
@@ -42,7 +40,6 @@ class ReportPageTest : public ::testing::Test {
     AtomicWrite(folder_ / "curve.csv",
                 "step,loss,valid_position_m,train_position_m\n10,3,2.5,2.4\n20,2,2.1,1.9\n");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   PaperOptions Options() const {
     PaperOptions options;
@@ -65,7 +62,7 @@ class ReportPageTest : public ::testing::Test {
     EXPECT_EQ(std::system(command.c_str()), 0);
   }
 
-  fs::path folder_;
+  testing::ScratchFolder folder_;
   std::vector<Lap> laps_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect {
 namespace {
@@ -54,7 +55,8 @@ TEST(CompareRuns, OfOtherDataAreNotPaired) {
 }
 
 TEST(ReadRun, RefusesOtherFiles) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / "run.json";
+  const testing::ScratchFolder folder;
+  const auto file = folder / "run.json";
   AtomicWrite(file, RunOf({1, 1, 1, 1}).dump());
   EXPECT_EQ(ReadRun(file)["images"], "rendered");
   AtomicWrite(file, "{\"rows\": []}");

@@ -1,12 +1,11 @@
 #include "recollect/localization/drive.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <numbers>
 
 #include "recollect/core/parallel.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -18,20 +17,17 @@ namespace fs = std::filesystem;
 class DriveTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) / ("recollect_drive_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
     const Lap lap = testing::DriveStreet(folder_ / "lap", {.length_m = 60, .seed = 1});
     CreateMap(folder_ / "m.map", std::span(&lap, 1), {}, pool_);
     map_.emplace(Map::Open(folder_ / "m.map"));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // Of key frame `key`, moved on by so many metres.
   SE3 Beyond(int key, double metres) const {
     return map_->At(key).world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, metres});
   }
 
-  fs::path folder_;
+  testing::ScratchFolder folder_;
   ThreadPool pool_{2};
   std::optional<Map> map_;
 };

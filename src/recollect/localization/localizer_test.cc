@@ -1,14 +1,14 @@
 #include "recollect/localization/localizer.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "recollect/cnn/pair_network.h"
 #include "recollect/core/parallel.h"
 #include "recollect/matching/mapped.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect {
@@ -20,21 +20,20 @@ namespace fs = std::filesystem;
 class LocalizerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = fs::path(::testing::TempDir()) / ("recollect_localizer_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    const Lap lap = testing::DriveStreet(folder_ / "lap", {.length_m = 40, .seed = 1});
+    folder_.emplace();
+    const Lap lap = testing::DriveStreet(*folder_ / "lap", {.length_m = 40, .seed = 1});
     MapOptions options;
     options.spacing_m = 1;
     options.geometry = matching::LandmarkSource();
-    CreateMap(folder_ / "m.map", std::span(&lap, 1), options, pool_);
+    CreateMap(*folder_ / "m.map", std::span(&lap, 1), options, pool_);
   }
-  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
   Localizer Make(const LocalizerOptions& options) { return {map_, std::nullopt, pool_, options}; }
 
-  inline static fs::path folder_;
+  inline static std::optional<testing::ScratchFolder> folder_;
   inline static ThreadPool pool_{2};
-  Map map_ = Map::Open(folder_ / "m.map");
+  Map map_ = Map::Open(*folder_ / "m.map");
 };
 
 TEST_F(LocalizerTest, TheCommitteeIsTheWitnessOfASingleImage) {

@@ -14,6 +14,7 @@
 #include "recollect/core/files.h"
 #include "recollect/core/parallel.h"
 #include "recollect/map/trials.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/wnn/encoder.h"
 
 namespace recollect {
@@ -23,19 +24,13 @@ namespace fs = std::filesystem;
 
 constexpr int kWidth = 96, kHeight = 72;
 
-class MapTest : public testing::Test {
+class MapTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("recollect_map_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     options_.spacing_m = 5;
     options_.network.neurons_x = 12;
     options_.network.neurons_y = 7;
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // A straight drive of `frames` images of noise, 5 m apart, as JPEG or PNG files.
   Lap MakeLap(const std::string& name, int frames, const std::string& extension = ".jpg") const {
@@ -84,7 +79,7 @@ class MapTest : public testing::Test {
     EXPECT_EQ(key, map.size());
   }
 
-  fs::path folder_;
+  testing::ScratchFolder folder_;
   MapOptions options_;
   ThreadPool pool_{2};
 };
@@ -239,7 +234,7 @@ TEST_F(MapTest, TellsForeignAndDamagedFiles) {
   };
   EXPECT_EQ(message(file), "opened");
   EXPECT_NE(message(folder_ / "none.map").find("no such map"), std::string::npos);
-  EXPECT_NE(message(folder_).find("is no file"), std::string::npos);
+  EXPECT_NE(message(folder_.path()).find("is no file"), std::string::npos);
 
   AtomicWrite(folder_ / "empty.map", "");
   EXPECT_NE(message(folder_ / "empty.map").find("is empty"), std::string::npos);

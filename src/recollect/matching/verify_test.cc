@@ -3,17 +3,17 @@
 #include "recollect/matching/verify.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/dataset/image.h"
 #include "recollect/dataset/sampling.h"
 #include "recollect/matching/mapped.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/testing/street.h"
 
 namespace recollect::matching {
@@ -24,18 +24,17 @@ namespace fs = std::filesystem;
 class VerifyTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = fs::path(::testing::TempDir()) / ("recollect_verify_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    laps_ = {testing::DriveStreet(folder_ / "1", {.length_m = 32, .lateral_m = 0.5, .seed = 1}),
-             testing::DriveStreet(folder_ / "2", {.length_m = 32, .lateral_m = -0.6, .seed = 2})};
-    live_ = testing::DriveStreet(folder_ / "3", {.length_m = 32, .brightness = 0.5, .seed = 3});
+    folder_.emplace();
+    laps_ = {testing::DriveStreet(*folder_ / "1", {.length_m = 32, .lateral_m = 0.5, .seed = 1}),
+             testing::DriveStreet(*folder_ / "2", {.length_m = 32, .lateral_m = -0.6, .seed = 2})};
+    live_ = testing::DriveStreet(*folder_ / "3", {.length_m = 32, .brightness = 0.5, .seed = 3});
     ThreadPool pool(2);
     MapOptions options;
     options.network.neurons_x = options.network.neurons_y = 4;
     options.geometry = LandmarkSource();
-    CreateMap(folder_ / "depth.map", laps_, options, pool);
+    CreateMap(*folder_ / "depth.map", laps_, options, pool);
   }
-  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
   static Features Live(std::size_t frame) {
     return FindFeatures(ReadGray(live_.frames[frame].left));
@@ -53,11 +52,11 @@ class VerifyTest : public ::testing::Test {
     return order;
   }
 
-  static fs::path folder_;
+  static std::optional<testing::ScratchFolder> folder_;
   static std::vector<Lap> laps_;
   static Lap live_;
 };
-fs::path VerifyTest::folder_;
+std::optional<testing::ScratchFolder> VerifyTest::folder_;
 std::vector<Lap> VerifyTest::laps_;
 Lap VerifyTest::live_;
 
@@ -69,10 +68,10 @@ TEST_F(VerifyTest, FindsPosesFromTheRightPlaceAmongWrongOnes) {
   MapOptions options;
   options.network.neurons_x = options.network.neurons_y = 4;
   options.geometry = LandmarkSource();
-  CreateMap(folder_ / "motion.map", laps_, options, pool);
+  CreateMap(*folder_ / "motion.map", laps_, options, pool);
   for (const char* name : {"depth.map", "motion.map"}) {
     SCOPED_TRACE(name);
-    const Map map = Map::Open(folder_ / name);
+    const Map map = Map::Open(*folder_ / name);
     ASSERT_TRUE(map.HasGeometry());
     const MappedFrames frames = FramesOf(map);
     int sure = 0, asked = 0;
@@ -98,7 +97,7 @@ TEST_F(VerifyTest, FindsPosesFromTheRightPlaceAmongWrongOnes) {
 // Each key frame is there twice, 5 m apart: the pose is found at the copy where it is expected. (Of
 // the bound on matches, expected_px, this says nothing.)
 TEST_F(VerifyTest, FindsThePoseWhereItIsExpected) {
-  const Map map = Map::Open(folder_ / "depth.map");
+  const Map map = Map::Open(*folder_ / "depth.map");
   MappedFrames frames = FramesOf(map);
   frames.lap.clear();  // of the copies it is not known
   const auto count = static_cast<int>(frames.world_from_camera.size());
@@ -126,7 +125,7 @@ TEST_F(VerifyTest, FindsThePoseWhereItIsExpected) {
 // The street is there once more, far off, and there with all its landmarks, here with three of
 // four.
 TEST_F(VerifyTest, TakesTheLikelierOfPlacesThatLookTheSame) {
-  const Map map = Map::Open(folder_ / "depth.map");
+  const Map map = Map::Open(*folder_ / "depth.map");
   MappedFrames frames = FramesOf(map);
   frames.lap.clear();  // of the copies it is not known
   const auto count = static_cast<int>(frames.world_from_camera.size());
@@ -161,7 +160,7 @@ TEST_F(VerifyTest, TakesTheLikelierOfPlacesThatLookTheSame) {
 }
 
 TEST_F(VerifyTest, KnowsWhatItDoesNotKnow) {
-  const Map map = Map::Open(folder_ / "depth.map");
+  const Map map = Map::Open(*folder_ / "depth.map");
   const MappedFrames frames = FramesOf(map);
   for (std::size_t frame = 4; frame < 13; frame += 4) {
     std::vector<int> order = ByDistance(frames, frame);
@@ -195,14 +194,14 @@ TEST_F(VerifyTest, KnowsWhatItDoesNotKnow) {
     EXPECT_GT(calibration.inflation, 0.3);
     EXPECT_LT(calibration.inflation, 5);
   }
-  CalibrateMap(folder_ / "depth.map", pool);
-  EXPECT_DOUBLE_EQ(Map::Open(folder_ / "depth.map").description().geometry_inflation,
+  CalibrateMap(*folder_ / "depth.map", pool);
+  EXPECT_DOUBLE_EQ(Map::Open(*folder_ / "depth.map").description().geometry_inflation,
                    calibration.inflation);
 }
 
 // The image is 320 pixels wide: half the width of the look that is meant for one of 640.
 TEST_F(VerifyTest, RefinesRoughPosesThatANarrowLookWouldConfirm) {
-  const Map map = Map::Open(folder_ / "depth.map");
+  const Map map = Map::Open(*folder_ / "depth.map");
   const MappedFrames frames = FramesOf(map);
   VerifyOptions wide, narrow;
   wide.guided_px[0] = 30;

@@ -7,14 +7,15 @@
 
 #include "recollect/core/error.h"
 #include "recollect/simulation/site.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect::simulation {
 namespace {
 
-std::filesystem::path TumFile(const std::string& name, const std::string& text) {
-  const auto path = std::filesystem::temp_directory_path() / ("recollect_route_" + name + ".tum");
-  std::ofstream(path) << text;
-  return path;
+Route TumRouteOf(const std::string& text) {
+  const testing::ScratchFolder folder;
+  std::ofstream(folder / "route.tum") << text;
+  return TumRoute(folder / "route.tum");
 }
 
 std::string Line(const std::vector<Eigen::Vector3d>& points) {
@@ -60,7 +61,7 @@ TEST(TumRoute, MayCrossItselfAndEndAbruptly) {
     const double t = 2 * M_PI * i / 200 * 0.97;
     eight.emplace_back(80 * std::sin(t), 50 * std::sin(2 * t), 0.5 * std::sin(2 * t));
   }
-  const Route route = TumRoute(TumFile("eight", Line(eight)));
+  const Route route = TumRouteOf(Line(eight));
   const std::vector<Street> streets = LayStreets(route, 1);
   EXPECT_GE(streets.size(), 2U);  // it is cut where it meets itself
   const Site site(route, streets, 1);
@@ -75,7 +76,7 @@ TEST(TumRoute, RefusesWhatIsNoRoute) {
   const auto refuses = [](const std::string& name, const std::string& text,
                           const std::string& why) {
     try {
-      TumRoute(TumFile(name, text));
+      TumRouteOf(text);
       ADD_FAILURE() << name << " was taken";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();

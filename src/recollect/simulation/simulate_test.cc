@@ -10,17 +10,12 @@
 #include "recollect/core/error.h"
 #include "recollect/core/files.h"
 #include "recollect/dataset/reader.h"
+#include "recollect/testing/scratch_folder.h"
 
 namespace recollect::simulation {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path Fresh(const std::string& name) {
-  const fs::path folder = fs::temp_directory_path() / ("recollect_simulate_" + name);
-  fs::remove_all(folder);
-  return folder;
-}
 
 SimulateOptions Short(const fs::path& out) {
   SimulateOptions options;
@@ -34,7 +29,8 @@ SimulateOptions Short(const fs::path& out) {
 }
 
 TEST(Simulate, MakesLapsThatTheReaderTakes) {
-  SimulateOptions options = Short(Fresh("reads"));
+  const testing::ScratchFolder folder;
+  SimulateOptions options = Short(folder / "reads");
   options.stereo = true;
   const SimulateResult result = Simulate(options);
   const std::vector<Lap> laps = ReadLaps(options.out);
@@ -55,7 +51,8 @@ TEST(Simulate, MakesLapsThatTheReaderTakes) {
 }
 
 TEST(Simulate, GoesOnWhereItStopped) {
-  const SimulateOptions whole = Short(Fresh("whole")), parts = Short(Fresh("parts"));
+  const testing::ScratchFolder folder;
+  const SimulateOptions whole = Short(folder / "whole"), parts = Short(folder / "parts");
   Simulate(whole);
   struct Stop {};
   EXPECT_THROW(Simulate(parts,
@@ -78,7 +75,8 @@ TEST(Simulate, GoesOnWhereItStopped) {
 }
 
 TEST(Simulate, DiskThatIsFull) {
-  SimulateOptions options = Short(Fresh("full"));
+  const testing::ScratchFolder folder;
+  SimulateOptions options = Short(folder / "full");
   rlimit old{};
   getrlimit(RLIMIT_FSIZE, &old);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -95,18 +93,20 @@ TEST(Simulate, DiskThatIsFull) {
 }
 
 TEST(Simulate, FoldersThatCannotBeWritten) {
-  const fs::path file = fs::temp_directory_path() / "recollect_simulate_file";
+  const testing::ScratchFolder folder;
+  const fs::path file = folder / "file";
   std::ofstream(file) << "not a folder";
   SimulateOptions options = Short(file / "laps");
   EXPECT_THROW(Simulate(options), Error);
-  options = Short(Fresh("taken"));
+  options = Short(folder / "taken");
   fs::create_directories(options.out / "lap-02");
   EXPECT_THROW(Simulate(options), Error);
 }
 
 TEST(Simulate, AbsurdOptions) {
   const auto refused = [](auto change) {
-    SimulateOptions options = Short(Fresh("absurd"));
+    const testing::ScratchFolder folder;
+    SimulateOptions options = Short(folder / "absurd");
     change(options);
     EXPECT_THROW(Simulate(options), Error);
     EXPECT_FALSE(fs::exists(options.out));

@@ -12,18 +12,13 @@
 #include "recollect/core/error.h"
 #include "recollect/core/parallel.h"
 #include "recollect/core/stopwatch.h"
+#include "recollect/testing/scratch_folder.h"
 #include "recollect/wnn/test_patterns.h"
 
 namespace recollect::wnn {
 namespace {
 
 constexpr int kNeurons = 300;
-
-std::filesystem::path Rendezvous() {
-  static int count = 0;
-  return std::filesystem::temp_directory_path() /
-         ("recollect-shard-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-}
 
 // Runs rank(r) in a process of its own for each r; returns what they exited with, -1 if killed.
 std::vector<int> RunRanks(int ranks, const std::function<int(int)>& rank) {
@@ -62,9 +57,9 @@ Memory Slice(int begin, int end) {
 }
 
 TEST(Shard, AnswersBitForBitAsOneProcessWould) {
-  const auto rendezvous = Rendezvous();
+  const testing::ScratchFolder folder;
   for (const int ranks : {2, 3}) {
-    const auto file = rendezvous.string() + std::to_string(ranks);
+    const auto file = folder / std::to_string(ranks);
     const auto codes = RunRanks(ranks, [&](int rank) {
       const int cuts[] = {0, 40, ranks == 2 ? 130 : 41, 130};
       const Memory slice = Slice(cuts[rank], cuts[rank + 1]), whole = Slice(0, 130);
@@ -81,12 +76,12 @@ TEST(Shard, AnswersBitForBitAsOneProcessWould) {
       return 0;
     });
     EXPECT_EQ(codes, std::vector<int>(static_cast<std::size_t>(ranks), 0));
-    std::filesystem::remove(file);
   }
 }
 
 TEST(Shard, AKilledRankIsAnErrorInTheOthersNotAHang) {
-  const auto file = Rendezvous();
+  const testing::ScratchFolder folder;
+  const auto file = folder / "ranks";
   const auto codes = RunRanks(2, [&](int rank) {
     const Memory slice = Slice(50 * rank, 50 * rank + 50);
     ThreadPool pool(1);
@@ -104,11 +99,11 @@ TEST(Shard, AKilledRankIsAnErrorInTheOthersNotAHang) {
     return 7;
   });
   EXPECT_EQ(codes, (std::vector<int>{5, -1}));
-  std::filesystem::remove(file);
 }
 
 TEST(Shard, ARankThatStaysAwayIsAnErrorAfterTheTimeOut) {
-  const auto file = Rendezvous();
+  const testing::ScratchFolder folder;
+  const auto file = folder / "ranks";
   const auto codes = RunRanks(1, [&](int) {
     const Memory slice = Slice(0, 5);
     ThreadPool pool(1);
@@ -120,7 +115,6 @@ TEST(Shard, ARankThatStaysAwayIsAnErrorAfterTheTimeOut) {
     return 6;
   });
   EXPECT_EQ(codes, std::vector<int>{5});
-  std::filesystem::remove(file);
 }
 
 }  // namespace
