@@ -258,7 +258,8 @@ PairAnswers CompactEngine::Answer(const torch::Tensor& images, std::span<const I
   PairAnswers answers;
   answers.motion = Corrected(solved, parts_.output->forward(pooled));
   if (parts_.covariance) {
-    answers.whitening = parts_.covariance->forward(pooled, solved, sightings);
+    answers.agreement = MotionFit(solved, sightings);
+    answers.whitening = parts_.covariance->forward(pooled, solved, sightings, answers.agreement);
   }
   return answers;
 }

@@ -140,7 +140,13 @@ Prediction CompactNetwork::forward(const torch::Tensor& live, const torch::Tenso
   prediction.key_features = key_unit;
   prediction.total = correlation.total;
   prediction.log_depth = log_depth.flatten(1);
-  if (covariance_) prediction.whitening = covariance_->forward(pooled, solved, sightings);
+  if (covariance_) {
+    {
+      const torch::NoGradGuard no_gradients;
+      prediction.agreement = MotionFit(solved, sightings);
+    }
+    prediction.whitening = covariance_->forward(pooled, solved, sightings, prediction.agreement);
+  }
   return prediction;
 }
 

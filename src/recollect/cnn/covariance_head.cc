@@ -28,7 +28,7 @@ CovarianceHead::CovarianceHead(std::int64_t features)
 }
 
 torch::Tensor CovarianceHead::forward(const torch::Tensor& features, const torch::Tensor& solved,
-                                      const Sightings& sightings) {
+                                      const Sightings& sightings, const torch::Tensor& agreement) {
   torch::Tensor input;
   {
     // The factor of what least squares says, in the form in which the layers give theirs.
@@ -40,7 +40,7 @@ torch::Tensor CovarianceHead::forward(const torch::Tensor& features, const torch
     const torch::Tensor diagonal = factor.diagonal(0, 1, 2);
     const torch::Tensor rows = (factor / diagonal.unsqueeze(2)).flatten(1).index_select(1, above_);
     const torch::Tensor numbers =
-        torch::cat({diagonal.log(), rows, MotionFit(solved, sightings).to(torch::kDouble)}, 1)
+        torch::cat({diagonal.log(), rows, agreement.to(torch::kDouble)}, 1)
             .clamp(-kBound, kBound)
             .to(features.scalar_type());
     input = torch::cat({features, numbers}, 1);

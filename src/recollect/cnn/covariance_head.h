@@ -15,10 +15,11 @@ class CovarianceHead : public torch::nn::Module {
   // features: numbers a pair.
   explicit CovarianceHead(std::int64_t features);
 
-  // features [B, features]; `solved` [B, 3, 4], the solution of `sightings`. The result is
-  // Prediction::whitening, of errors of 0.01 rad and 0.3 m before any training.
+  // features [B, features]; `solved` [B, 3, 4], the solution of `sightings`, and its `agreement`
+  // [B, 3] with them. The result is Prediction::whitening, of errors of 0.01 rad and 0.3 m before
+  // any training.
   torch::Tensor forward(const torch::Tensor& features, const torch::Tensor& solved,
-                        const Sightings& sightings);
+                        const Sightings& sightings, const torch::Tensor& agreement);
 
  private:
   torch::nn::Sequential layers_;

@@ -45,19 +45,22 @@ struct Sample {
   torch::Tensor still, truth;
 };
 
+torch::Tensor Forward(CovarianceHead& head, const Sample& sample) {
+  return head.forward(sample.features, sample.still, sample.sightings,
+                      MotionFit(sample.still, sample.sightings).detach());
+}
+
 // Squared lengths of the errors in the deviations predicted, [pairs].
 torch::Tensor Squares(CovarianceHead& head, const Sample& sample) {
   const torch::NoGradGuard no_gradients;
-  const torch::Tensor whitening = head.forward(sample.features, sample.still, sample.sightings);
+  const torch::Tensor whitening = Forward(head, sample);
   const torch::Tensor x = Se3Difference(sample.still, sample.truth).unsqueeze(2);
   return torch::bmm(whitening, x).square().sum({1, 2});
 }
 
 double Loss(CovarianceHead& head, const Sample& sample) {
   const torch::NoGradGuard no_gradients;
-  return LikelihoodLoss(sample.still, sample.truth,
-                        head.forward(sample.features, sample.still, sample.sightings))
-      .item<double>();
+  return LikelihoodLoss(sample.still, sample.truth, Forward(head, sample)).item<double>();
 }
 
 TEST(CovarianceHeadTest, LearnsNoiseThatDependsOnThePair) {
@@ -67,9 +70,7 @@ TEST(CovarianceHeadTest, LearnsNoiseThatDependsOnThePair) {
   for (int step = 0; step < 500; ++step) {
     const Sample sample(128);
     adam.zero_grad();
-    LikelihoodLoss(sample.still, sample.truth,
-                   head.forward(sample.features, sample.still, sample.sightings))
-        .backward();
+    LikelihoodLoss(sample.still, sample.truth, Forward(head, sample)).backward();
     adam.step();
   }
   const Sample test(4000);
@@ -86,7 +87,7 @@ TEST(CovarianceHeadTest, LearnsNoiseThatDependsOnThePair) {
 
   // The correlation between turning and going sideways was found: without it the likelihood falls.
   const torch::NoGradGuard no_gradients;
-  const torch::Tensor whitening = head.forward(test.features, test.still, test.sightings);
+  const torch::Tensor whitening = Forward(head, test);
   const torch::Tensor covariance = torch::inverse(torch::bmm(whitening.transpose(1, 2), whitening));
   const torch::Tensor plain =
       covariance.diagonal(0, 1, 2).rsqrt().diag_embed();  // the same deviations, uncorrelated
@@ -101,7 +102,7 @@ TEST(CovarianceHeadTest, NothingFlowsBackIntoItsInputs) {
                                &sample.sightings.weight, &sample.still}) {
     *input = input->clone().requires_grad_(true);
   }
-  head.forward(sample.features, sample.still, sample.sightings).sum().backward();
+  Forward(head, sample).sum().backward();
   for (const torch::Tensor& input : {sample.features, sample.sightings.points, sample.still}) {
     EXPECT_FALSE(input.grad().defined());
   }
@@ -122,7 +123,7 @@ TEST(CovarianceHeadTest, ExtremesStayFinite) {
   sample.sightings.weight[0] *= 0;
   sample.sightings.weight[1] *= 1e12;
   sample.features *= 1e6;
-  const torch::Tensor whitening = head.forward(sample.features, sample.still, sample.sightings);
+  const torch::Tensor whitening = Forward(head, sample);
   EXPECT_TRUE(whitening.isfinite().all().item<bool>());
   EXPECT_TRUE((whitening.diagonal(0, 1, 2) > 0).all().item<bool>());
   EXPECT_TRUE(torch::equal(whitening, whitening.triu()));

@@ -51,7 +51,7 @@ TEST(Device, TrainsElsewhereAsOnTheProcessor) {
     EXPECT_NEAR(one.valid_position_m, other.valid_position_m, 0.02) << i;
   }
   // What it wrote answers on the processor.
-  EXPECT_TRUE(PoseNetwork::Load(street.File("xpu.model"), 1).info().covariance_scale);
+  EXPECT_TRUE(PoseNetwork::Load(street.File("xpu.model"), 1).info().covariance);
 }
 
 TEST(Device, StepsThePapersNetworkElsewhere) {

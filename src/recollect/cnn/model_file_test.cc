@@ -127,7 +127,7 @@ TEST_F(ModelFile, HeadersThatLie) {
 PoseNetwork WithCovariance() {
   torch::manual_seed(5);
   ModelInfo info = Info();
-  info.covariance_scale = 2.5;
+  info.covariance = CovarianceCalibration{2.5, {0.5, -1, 2}, {0.1, 0.2, -0.3}};
   const auto network = MakeNetwork(info.network, info.camera, true);
   const torch::NoGradGuard no_gradients;
   for (auto& parameter : network->named_parameters()) {
@@ -142,7 +142,7 @@ TEST_F(ModelFile, CovarianceSurvivesTheRoundTrip) {
   const PoseNetwork first = WithCovariance();
   first.Save(file_);
   const PoseNetwork second = PoseNetwork::Load(file_, 1);
-  EXPECT_EQ(second.info().covariance_scale, 2.5);
+  EXPECT_EQ(second.info().covariance, first.info().covariance);
   cv::Mat live(192, 320, CV_8UC3), key(192, 320, CV_8UC3), other(192, 320, CV_8UC3);
   for (cv::Mat* image : {&live, &key, &other}) cv::randu(*image, 0, 255);
   const std::vector<CropPair> pairs{{live, key}, {live, other}};
@@ -158,7 +158,7 @@ TEST_F(ModelFile, CovarianceSurvivesTheRoundTrip) {
 
   // The scale is one of covariances.
   ModelInfo twice = second.info();
-  twice.covariance_scale = 5;
+  twice.covariance->scale = 5;
   const auto larger = PoseNetwork(twice, second.network()).Estimate(pairs);
   EXPECT_TRUE(larger[0].covariance->isApprox(2 * *before[0].covariance, 1e-9));
 }
@@ -174,7 +174,7 @@ TEST_F(ModelFile, WithoutCovarianceThereIsNone) {
 // Training from a model without covariance begins with a fresh one, and with the model's answers.
 TEST_F(ModelFile, StartsACovarianceFromAModelWithoutOne) {
   ModelInfo info = Info();
-  info.covariance_scale = 1;
+  info.covariance.emplace();
   torch::manual_seed(8);
   const auto network = MakeNetwork(info.network, info.camera, true);
   CopyWeights(file_, info.network, *network);
@@ -196,7 +196,7 @@ TEST(EarlierModel, Loads) {
   const std::filesystem::path file = "models/campus-compact.rcm";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
   const PoseNetwork network = PoseNetwork::Load(file, 1);
-  EXPECT_FALSE(network.info().covariance_scale);
+  EXPECT_FALSE(network.info().covariance);
   EXPECT_GT(network.info().validation.position_mean_m, 0);
   EXPECT_FALSE(network.info().validation.inside_95);
   const Crop& crop = network.crop();
@@ -212,6 +212,7 @@ PairErrors ErrorsOf(int count) {
   for (int i = 0; i < count; ++i) {
     errors.position_m.push_back(i + 1);
     errors.heading_deg.push_back(count - i);
+    errors.agreement.emplace_back(0.1 * (i % 3), 0, -0.2 * (i % 5));
     errors.pose_square.push_back(0.37 * ((7 * i) % count + 1));
     errors.position_square.push_back(0.01 * (i + 1));
   }
@@ -221,12 +222,11 @@ PairErrors ErrorsOf(int count) {
 TEST(PairErrorsOf, CalibrationPutsNinetyFivePercentInside) {
   for (const int count : {1, 7, 20, 101, 600}) {
     PairErrors errors = ErrorsOf(count);
-    errors.ScaleCovariance(errors.CalibratingScale());
+    errors.Apply(errors.Calibration());
     const auto inside = static_cast<int>(std::lround(*errors.Figures().inside_95 * count));
     EXPECT_EQ(inside, static_cast<int>(std::ceil(0.95 * count))) << count;
-    EXPECT_NEAR(errors.CalibratingScale(), 1, 1e-6) << count;
   }
-  EXPECT_EQ(PairErrors().CalibratingScale(), 1);
+  EXPECT_EQ(PairErrors().Calibration(), CovarianceCalibration());
 }
 
 TEST(PairErrorsOf, FiguresSayWhatMostErrorsStayBelow) {

@@ -18,6 +18,22 @@ std::optional<double> OptionalNumber(const nlohmann::json& from, const char* key
   return from.contains(key) ? std::optional(from.at(key).get<double>()) : std::nullopt;
 }
 
+std::vector<double> Numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Eigen::Vector3d VectorFrom(const nlohmann::json& from) {
+  return {from.at(0).get<double>(), from.at(1).get<double>(), from.at(2).get<double>()};
+}
+
+// Files of earlier versions have the scale alone.
+CovarianceCalibration CalibrationFrom(const nlohmann::json& from) {
+  CovarianceCalibration calibration{.scale = from.at("covariance_scale").get<double>()};
+  if (from.contains("covariance_agreement")) {
+    calibration.usual = VectorFrom(from["covariance_agreement"].at("usual"));
+    calibration.weights = VectorFrom(from["covariance_agreement"].at("weights"));
+  }
+  return calibration;
+}
+
 }  // namespace
 
 void to_json(nlohmann::json& to, const PairFigures& f) {
@@ -68,7 +84,11 @@ std::string ToJson(const ModelInfo& info) {
                       {"validated_on", info.validated_on},
                       {"validation", info.validation},
                       {"options", options}};
-  if (info.covariance_scale) json["covariance_scale"] = *info.covariance_scale;
+  if (info.covariance) {
+    json["covariance_scale"] = info.covariance->scale;
+    json["covariance_agreement"] = {{"usual", Numbers(info.covariance->usual)},
+                                    {"weights", Numbers(info.covariance->weights)}};
+  }
   return json.dump();
 }
 
@@ -88,8 +108,8 @@ ModelInfo ModelInfoFromJson(const std::string& json, const std::string& where) {
     from.at("validated_on").get_to(info.validated_on);
     from.at("validation").get_to(info.validation);
     info.options = from.at("options").dump();
-    info.covariance_scale = OptionalNumber(from, "covariance_scale");
-    Require(info.covariance_scale.value_or(1) > 0, where,
+    if (from.contains("covariance_scale")) info.covariance = CalibrationFrom(from);
+    Require(!info.covariance || info.covariance->scale > 0, where,
             "has a covariance scale that is not positive");
     const Crop& crop = info.crop;
     Require(crop.image_width > 0 && crop.image_height > 0 && crop.width > 0 && crop.height > 0 &&

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "recollect/cnn/covariance_calibration.h"
 #include "recollect/cnn/crop.h"
 #include "recollect/cnn/network_kind.h"
 #include "recollect/geometry/camera.h"
@@ -39,9 +40,9 @@ struct ModelInfo {
   std::int64_t parameters = 0;
   std::string validated_on;  // what pairs `validation` is about, in words
   PairFigures validation;
-  // The network predicts its covariance, which is to be multiplied by this: then 95 % of the errors
-  // on the pairs of `validation` are inside their 95 % ellipsoids. None: it predicts none.
-  std::optional<double> covariance_scale;
+  // The network predicts its covariance. With this, 95 % of the errors on the pairs of `validation`
+  // are inside their 95 % ellipsoids. None: it predicts none.
+  std::optional<CovarianceCalibration> covariance;
   std::string options;  // the training's options, as JSON
 };
 

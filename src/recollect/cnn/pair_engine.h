@@ -13,7 +13,7 @@ struct ImagePair {
 };
 
 struct PairAnswers {
-  torch::Tensor motion, whitening;  // as in Prediction
+  torch::Tensor motion, whitening, agreement;  // as in Prediction
 };
 
 // The way forward alone, on the processor, made from a network's weights as they were at the time.

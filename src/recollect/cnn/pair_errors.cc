@@ -60,15 +60,15 @@ void PairErrors::Add(const SE3& predicted, const SE3& truth) {
   no_motion_heading_deg.push_back(HeadingDegrees(SE3(), truth));
 }
 
-double PairErrors::CalibratingScale() const {
-  if (pose_square.empty()) return 1;
-  // A little more than needed: rounding is not to put the last one outside.
-  return std::max(Bound(pose_square) / kPoseBound, 1e-12) * (1 + 1e-9);
+CovarianceCalibration PairErrors::Calibration() const {
+  return Calibrate(pose_square, agreement, kShare, kPoseBound);
 }
 
-void PairErrors::ScaleCovariance(double by) {
-  for (std::vector<double>* squares : {&pose_square, &position_square}) {
-    for (double& square : *squares) square /= by;
+void PairErrors::Apply(const CovarianceCalibration& calibration) {
+  for (std::size_t i = 0; i < pose_square.size(); ++i) {
+    const double factor = calibration.FactorOf(agreement[i]);
+    pose_square[i] /= factor;
+    position_square[i] /= factor;
   }
 }
 
@@ -116,6 +116,7 @@ PairErrors EvaluatePairs(const PoseNetwork& network, const PairData& data,
       const Eigen::Vector3d shift = x.tail<3>();
       const Eigen::Matrix3d of_shift = covariance.bottomRightCorner<3, 3>();
       errors.pose_square.push_back(x.dot(covariance.llt().solve(x)));
+      errors.agreement.push_back(answers[i].agreement);
       errors.position_square.push_back(shift.dot(of_shift.llt().solve(shift)));
     }
     Report(progress, "evaluate pairs", static_cast<std::int64_t>(from + block.size()),

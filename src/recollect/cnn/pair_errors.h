@@ -17,16 +17,17 @@ struct PairErrors {
   // Of a network that predicts its covariance, else empty: squared lengths of the errors of pose
   // (six dimensions) and position (three) in standard deviations.
   std::vector<double> pose_square, position_square;
+  std::vector<Eigen::Vector3d> agreement;  // RelativeEstimate's
 
   // The error of one more pair, keyframe_from_live both.
   void Add(const SE3& predicted, const SE3& truth);
 
-  // What covariances are to be multiplied by so that 95 % of these errors of pose, and no fewer,
-  // are inside their 95 % ellipsoids; 1 where nothing is predicted.
-  double CalibratingScale() const;
+  // Of covariances that were not calibrated: with it 95 % of these errors of pose, and no fewer,
+  // are inside their 95 % ellipsoids.
+  CovarianceCalibration Calibration() const;
 
-  // As if all covariances had been `by` times as large.
-  void ScaleCovariance(double by);
+  // As if all covariances had been calibrated so.
+  void Apply(const CovarianceCalibration& calibration);
 
   PairFigures Figures() const;
 };

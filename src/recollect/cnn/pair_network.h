@@ -22,9 +22,10 @@ struct Prediction {
   // has no such output.
   torch::Tensor log_depth;
   // How sure the motion is, [B, 6, 6], upper triangular with a positive diagonal: with
-  // truth = motion * Exp(x), rotation first, rad and m, whitening * x is N(0, I) but for one factor
-  // for all pairs (ModelInfo::covariance_scale). Undefined where the network has no such output.
-  torch::Tensor whitening;
+  // truth = motion * Exp(x), rotation first, rad and m, whitening * x is N(0, I) but for what
+  // calibration finds (ModelInfo::covariance), and how well the pair's sightings agree, [B, 3]
+  // (MotionFit). Undefined where the network has no such output.
+  torch::Tensor whitening, agreement;
 };
 
 // A siamese network. Inputs [B, 3, H, W], RGB; see NetworkTraits for their scale.

@@ -137,7 +137,7 @@ PairAnswers PaperEngine::Answer(const torch::Tensor& images, std::span<const Ima
   OnednnStream().wait();
   torch::Tensor cells = torch::from_blob(nhwc.get_data_handle(), {batch, d[2] * d[3], d[1]});
   for (const Wide& layer : wide_) cells = layer.Run(cells);
-  return {Se3Layer(torch::addmm(last_bias_, cells.flatten(1), last_weight_)), {}};
+  return {Se3Layer(torch::addmm(last_bias_, cells.flatten(1), last_weight_)), {}, {}};
 }
 
 }  // namespace recollect::cnn

@@ -38,7 +38,7 @@ void CopyWeights(const TensorFile& file, const ModelInfo& info, const std::strin
                  PairNetwork& network) {
   const torch::NoGradGuard no_gradients;
   for (auto& parameter : network.named_parameters()) {
-    if (!info.covariance_scale && parameter.key().starts_with(kCovarianceWeights)) continue;
+    if (!info.covariance && parameter.key().starts_with(kCovarianceWeights)) continue;
     parameter.value().copy_(file.Find(parameter.key(), parameter.value(), where));
   }
 }
@@ -85,7 +85,8 @@ PairAnswers Forward(PairNetwork& network, const Prepared& prepared) {
   }
   const Prediction said =
       network.forward(torch::stack(live).to(device), torch::stack(key).to(device));
-  return {said.motion.cpu(), said.whitening.defined() ? said.whitening.cpu() : said.whitening};
+  if (!said.whitening.defined()) return {said.motion.cpu(), {}, {}};
+  return {said.motion.cpu(), said.whitening.cpu(), said.agreement.cpu()};
 }
 
 SE3 MotionAt(const torch::Tensor& motions, std::int64_t i) {
@@ -131,7 +132,7 @@ PoseNetwork PoseNetwork::Load(const std::filesystem::path& path, int threads, Pr
   SetThreads(threads);
   const TensorFile file = ReadModel(path);
   const ModelInfo info = ModelInfoFromJson(file.header["model"].dump(), path.string());
-  auto network = MakeNetwork(info.network, info.camera, info.covariance_scale.has_value());
+  auto network = MakeNetwork(info.network, info.camera, info.covariance.has_value());
   CopyWeights(file, info, path.string(), *network);
   return {info, network, precision};
 }
@@ -176,7 +177,7 @@ std::vector<SE3> PoseNetwork::KeyframeFromLive(std::span<const CropPair> pairs) 
 }
 
 std::vector<RelativeEstimate> PoseNetwork::Estimate(std::span<const CropPair> pairs) const {
-  return Ask(pairs, info_.covariance_scale.has_value());
+  return Ask(pairs, info_.covariance.has_value());
 }
 
 std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
@@ -191,11 +192,19 @@ std::vector<RelativeEstimate> PoseNetwork::Ask(std::span<const CropPair> pairs,
     PairAnswers out = engine != nullptr ? engine->Answer(prepared.images, prepared.pairs)
                                         : Forward(*network_, prepared);
     out.motion = out.motion.contiguous();
-    if (covariance) out.whitening = out.whitening.contiguous();
+    if (covariance) {
+      out.whitening = out.whitening.contiguous();
+      out.agreement = out.agreement.contiguous();
+    }
     for (std::int64_t i = 0; i < out.motion.size(0); ++i) {
-      answers.push_back({MotionAt(out.motion, i), std::nullopt});
+      answers.push_back({MotionAt(out.motion, i), std::nullopt, Eigen::Vector3d::Zero()});
       if (covariance) {
-        answers.back().covariance = *info_.covariance_scale * CovarianceAt(out.whitening, i);
+        RelativeEstimate& answer = answers.back();
+        answer.agreement =
+            Eigen::Map<const Eigen::Vector3f>(out.agreement.data_ptr<float>() + 3 * i)
+                .cast<double>();
+        answer.covariance =
+            info_.covariance->FactorOf(answer.agreement) * CovarianceAt(out.whitening, i);
       }
     }
   }

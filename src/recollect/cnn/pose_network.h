@@ -25,6 +25,7 @@ struct CropPair {
 struct RelativeEstimate {
   SE3 keyframe_from_live;
   std::optional<Matrix6d> covariance;
+  Eigen::Vector3d agreement;  // of what was seen (MotionFit), where there is a covariance
 };
 
 // A trained network, ready to answer. Not for several threads at once: each takes its own copy
@@ -61,7 +62,7 @@ class PoseNetwork {
   std::vector<SE3> KeyframeFromLive(std::span<const CropPair> pairs) const;
 
   // The same motions, up to rounding, with how sure they are: calibrated on the validation pairs of
-  // the training (ModelInfo::covariance_scale).
+  // the training (ModelInfo::covariance).
   std::vector<RelativeEstimate> Estimate(std::span<const CropPair> pairs) const;
 
   const std::shared_ptr<PairNetwork>& network() const { return network_; }

@@ -112,7 +112,7 @@ class Trainer {
     network_ = MakeNetwork(options.network, data.train.camera, PredictsCovariance());
     if (!options.start.empty()) {
       const ModelInfo start = CopyWeights(options.start, options.network, *network_);
-      fresh_covariance_ = PredictsCovariance() && !start.covariance_scale;
+      fresh_covariance_ = PredictsCovariance() && !start.covariance;
     }
     Divisor divisor;
     if (ranks_.ranks() > 1) {
@@ -297,9 +297,9 @@ class Trainer {
     const Stopwatch validation;
     CurvePoint point = TakeMeans(state_);
     PairErrors errors =
-        EvaluatePairs(PoseNetwork(Describe({}, 1), Judged()), data_.valid, data_.quick_valid);
-    const double scale = errors.CalibratingScale();
-    errors.ScaleCovariance(scale);
+        EvaluatePairs(PoseNetwork(Describe({}, {}), Judged()), data_.valid, data_.quick_valid);
+    const CovarianceCalibration calibration = errors.Calibration();
+    errors.Apply(calibration);
     const PairFigures figures = errors.Figures();
     point.step = state_.step;
     point.epoch = static_cast<double>(state_.step) / static_cast<double>(per_epoch_);
@@ -313,7 +313,7 @@ class Trainer {
       // A covariance that has learnt nothing yet is kept only until there is another.
       if (state_.step > 0 || !fresh_covariance_) state_.best_m = figures.position_mean_m;
       state_.without_gain = 0;
-      PoseNetwork(Describe(figures, scale), Judged()).Save(options_.out);
+      PoseNetwork(Describe(figures, calibration), Judged()).Save(options_.out);
     }
     WriteCurve(options_.csv, state_.curve);
     Keep();
@@ -322,7 +322,7 @@ class Trainer {
 
   bool PredictsCovariance() const { return options_.loss.kind == LossKind::kUncertainty; }
 
-  ModelInfo Describe(const PairFigures& figures, double covariance_scale) const {
+  ModelInfo Describe(const PairFigures& figures, const CovarianceCalibration& calibration) const {
     ModelInfo info;
     info.network = options_.network;
     info.crop = data_.train.crop;
@@ -335,7 +335,7 @@ class Trainer {
     for (const auto& parameter : network_->parameters()) info.parameters += parameter.numel();
     info.validated_on = data_.validated_on;
     info.validation = figures;
-    if (PredictsCovariance()) info.covariance_scale = covariance_scale;
+    if (PredictsCovariance()) info.covariance = calibration;
     info.options = ToJson(options_);
     return info;
   }

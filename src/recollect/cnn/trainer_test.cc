@@ -251,14 +251,14 @@ TEST_F(TrainerTest, AnAverageOverNothingIsTheWeights) {
 // A covariance is put on a model that has none, and calibrated on the pairs that are validated.
 TEST_F(TrainerTest, PutsACalibratedCovarianceOnAModel) {
   const TrainResult first = Run(Options("first"));
-  EXPECT_FALSE(first.model.covariance_scale);
+  EXPECT_FALSE(first.model.covariance);
   TrainOptions options = Options("second");
   options.start = Options("first").out;
   options.loss.kind = LossKind::kUncertainty;
   options.validation_pairs = 40;
   const TrainResult second = Run(options);
   const PoseNetwork network = PoseNetwork::Load(options.out, 1);
-  ASSERT_TRUE(network.info().covariance_scale);
+  ASSERT_TRUE(network.info().covariance);
   ThreadPool pool(1);
   const PairData data =
       LoadPairs(std::span(street_.laps()).last(1), std::span(street_.laps()).first(1),

@@ -64,7 +64,7 @@ TEST_F(LocalizerTest, AnAnswerAgainstTheDriveIsUncertain) {
 }
 
 // Before any training: "no motion" or nearly, with errors of 0.01 rad and 0.3 m.
-cnn::PoseNetwork Network(const Map& map, std::optional<double> covariance_scale) {
+cnn::PoseNetwork Network(const Map& map, std::optional<cnn::CovarianceCalibration> covariance) {
   const PinholeCamera& camera = map.description().camera.left;
   cnn::ModelInfo info;
   info.crop = cnn::DefaultCrop(info.network, camera.width, camera.height);
@@ -72,15 +72,16 @@ cnn::PoseNetwork Network(const Map& map, std::optional<double> covariance_scale)
   info.validation.pairs = 10;
   info.validation.position_mean_m = 0.5;
   info.validation.heading_mean_deg = 1;
-  info.covariance_scale = covariance_scale;
-  return {info, cnn::MakeNetwork(info.network, info.camera, covariance_scale.has_value())};
+  info.covariance = covariance;
+  return {info, cnn::MakeNetwork(info.network, info.camera, covariance.has_value())};
 }
 
 TEST_F(LocalizerTest, TheNetworksAnswerIsAsSureAsItSays) {
   LocalizerOptions options;
   options.relative = Relative::kCnn;
   const Localization said =
-      Localizer(map_, Network(map_, 4.0), pool_, options).Localize(map_.Image(20));
+      Localizer(map_, Network(map_, cnn::CovarianceCalibration{.scale = 4}), pool_, options)
+          .Localize(map_.Image(20));
   Vector6d variances;
   variances << 4e-4, 4e-4, 4e-4, 0.36, 0.36, 0.36;
   EXPECT_TRUE(said.covariance.isApprox(Matrix6d(variances.asDiagonal()), 1e-5)) << said.covariance;
