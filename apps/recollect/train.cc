@@ -35,7 +35,7 @@ struct TrainFlags {
   std::string network = "compact";
   std::string schedule, loss;
   int ranks = 1;  // processes to start on this machine
-  bool worlds_apart = false;
+  bool worlds_apart = false, half = false;
   cnn::TrainOptions given;
 };
 
@@ -61,6 +61,7 @@ struct TrainCommand {
     take("--schedule", options.schedule,
          flags.schedule == "cosine" ? cnn::Schedule::kCosine : cnn::Schedule::kHalving);
     take("--augment", options.augment, given.augment);
+    options.precision = flags.half ? cnn::Precision::kBfloat16 : cnn::Precision::kFloat32;
     take("--average", options.average, given.average);
     take("--loss", options.loss.kind,
          flags.loss.empty() ? cnn::LossKind::kProjection : cnn::LossKindFromName(flags.loss));
@@ -158,6 +159,8 @@ void AddTrain(CLI::App& app) {
   command.add_option("--warm-up", given.warm_up_steps, "steps over which the rate rises");
   command.add_option("--weight-decay", given.weight_decay, "decoupled weight decay");
   command.add_flag("--augment,!--no-augment", given.augment, "vary light and colours");
+  command.add_flag("--bf16", flags.half,
+                   "convolve in bfloat16; networks a and b, on the processor");
   command.add_option("--average", given.average,
                      "keep averages of the weights, of which a step leaves this share; 0: off");
   command.add_option("--loss", flags.loss,

@@ -124,7 +124,8 @@ std::vector<double> TimeQuestionsTogether(const PoseNetwork& network,
   return times;
 }
 
-std::vector<double> TimeSteps(bool ours, const CnnBenchOptions& options) {
+std::vector<double> TimeSteps(bool ours, const CnnBenchOptions& options,
+                              Precision precision = Precision::kFloat32) {
   const auto network = NetworkA(options.seed);
   network->train();
   const cnn::Crop crop = cnn::DefaultCrop(NetworkKind::kPaperA, 640, 480);
@@ -136,6 +137,7 @@ std::vector<double> TimeSteps(bool ours, const CnnBenchOptions& options) {
   const PinholeCamera grid = camera.Subsampled(cnn::kDepthStep);
   batch.depth = torch::full({options.batch, grid.height, grid.width}, 10.F);
   const cnn::TrainingLoss loss(camera, {});
+  network->TrainIn(precision);
   if (ours) {
     cnn::Adam adam(*network, {});
     return Time(1, options.steps, [&] {
@@ -237,7 +239,7 @@ std::vector<double> Compare(const CnnBenchOptions& options) {
 
 nlohmann::json RunCnnBench(const CnnBenchOptions& options, const ProgressSink& progress) {
   std::int64_t done = 0;
-  constexpr std::int64_t kLegs = 10;
+  constexpr std::int64_t kLegs = 11;
   const auto leg = [&](const std::string& name, bool as_installed, const auto& body) {
     Report(progress, "bench cnn", done++, kLegs, name);
     return RunInChild(name, [&] {
@@ -265,6 +267,8 @@ nlohmann::json RunCnnBench(const CnnBenchOptions& options, const ProgressSink& p
   });
   train["libtorch"] = leg("train libtorch", true, [&] { return TimeSteps(false, options); });
   train["ours"] = leg("train ours", false, [&] { return TimeSteps(true, options); });
+  train["ours_bf16"] =
+      leg("train ours_bf16", false, [&] { return TimeSteps(true, options, Precision::kBfloat16); });
   const auto peak = leg("peak", false, [&] { return Peak(Precision::kFloat32); });
   const auto peak_half = leg("peak bf16", false, [&] { return Peak(Precision::kBfloat16); });
   const auto answers = leg("answers", false, [&] { return Compare(options); });
@@ -309,9 +313,11 @@ std::string DescribeCnnBench(const nlohmann::json& f) {
       "                        wall    processor\n"
       "training step, {} pairs\n"
       "  ours             {:8.2f} s  {:8.2f} s\n"
+      "  ours_bf16        {:8.2f} s  {:8.2f} s\n"
       "  libtorch         {:8.2f} s  {:8.2f} s   ratio {:.2f}, {:.2f}\n"
       "one pair\n",
       f["batch"].get<int>(), at("/train_step_s/ours"), at("/train_step_cpu_s/ours"),
+      at("/train_step_s/ours_bf16"), at("/train_step_cpu_s/ours_bf16"),
       at("/train_step_s/libtorch"), at("/train_step_cpu_s/libtorch"), at("/train_ratio"),
       at("/train_cpu_ratio"));
   for (const char* name : {"ours_fp32", "ours_bf16", "compact", "libtorch"}) {

@@ -27,4 +27,10 @@ void Rectify(float* values, std::int64_t count, float slope);
 double RectifyBackward(const float* rectified, const float* gradient, float* out,
                        std::int64_t count, float slope);
 
+// The same of bfloat16 values, given by their bits; sums and products in float. A value that is no
+// number stays none.
+void RectifyBfloat16(std::uint16_t* values, std::int64_t count, float slope);
+double RectifyBackwardBfloat16(const std::uint16_t* rectified, const std::uint16_t* gradient,
+                               std::uint16_t* out, std::int64_t count, float slope);
+
 }  // namespace recollect::cnn

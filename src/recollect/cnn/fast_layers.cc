@@ -19,14 +19,23 @@ using torch::autograd::variable_list;
 constexpr std::int64_t kGrain = 1 << 15;
 constexpr float kLeastSlope = 1e-3F;  // below, what went in cannot be told from what came out
 
+bool IsHalf(const torch::Tensor& x) { return x.scalar_type() == torch::kBFloat16; }
+
+std::uint16_t* Bits(const torch::Tensor& x) {
+  return reinterpret_cast<std::uint16_t*>(x.data_ptr<at::BFloat16>());
+}
+
 class RectifyFunction : public torch::autograd::Function<RectifyFunction> {
  public:
   static torch::Tensor forward(AutogradContext* context, torch::Tensor x,
                                const torch::Tensor& slope) {
-    auto* values = x.data_ptr<float>();
     const auto factor = slope.item<float>();
     at::parallel_for(0, x.numel(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      Rectify(values + begin, end - begin, factor);
+      if (IsHalf(x)) {
+        RectifyBfloat16(Bits(x) + begin, end - begin, factor);
+      } else {
+        Rectify(x.data_ptr<float>() + begin, end - begin, factor);
+      }
     });
     context->mark_dirty({x});
     context->save_for_backward({x, slope});
@@ -47,9 +56,13 @@ class RectifyFunction : public torch::autograd::Function<RectifyFunction> {
         0, static_cast<std::int64_t>(sums.size()), 1, [&](std::int64_t begin, std::int64_t end) {
           for (std::int64_t i = begin; i < end; ++i) {
             const std::int64_t from = i * kPart;
-            sums[static_cast<std::size_t>(i)] = RectifyBackward(
-                y.data_ptr<float>() + from, gradient.data_ptr<float>() + from,
-                out.data_ptr<float>() + from, std::min(kPart, y.numel() - from), factor);
+            const std::int64_t count = std::min(kPart, y.numel() - from);
+            sums[static_cast<std::size_t>(i)] =
+                IsHalf(y)
+                    ? RectifyBackwardBfloat16(Bits(y) + from, Bits(gradient) + from,
+                                              Bits(out) + from, count, factor)
+                    : RectifyBackward(y.data_ptr<float>() + from, gradient.data_ptr<float>() + from,
+                                      out.data_ptr<float>() + from, count, factor);
           }
         });
     double sum = 0;
@@ -59,7 +72,7 @@ class RectifyFunction : public torch::autograd::Function<RectifyFunction> {
 };
 
 bool Walkable(const torch::Tensor& x) {
-  return x.is_cpu() && x.scalar_type() == torch::kFloat && x.dim() == 4 &&
+  return x.is_cpu() && (x.scalar_type() == torch::kFloat || IsHalf(x)) && x.dim() == 4 &&
          x.is_contiguous(x.suggest_memory_format());
 }
 
@@ -112,6 +125,12 @@ class ProductFunction : public torch::autograd::Function<ProductFunction> {
 };
 
 }  // namespace
+
+torch::Tensor Convolve(const torch::Tensor& x, const torch::nn::Conv2dImpl& layer) {
+  return torch::conv2d(x, layer.weight.to(x.scalar_type()), layer.bias.to(x.scalar_type()),
+                       layer.options.stride(),
+                       c10::get<torch::ExpandingArray<2>>(layer.options.padding()));
+}
 
 torch::Tensor RectifyInPlace(const torch::Tensor& x, const torch::Tensor& slope) {
   if (!Walkable(x) || slope.numel() != 1 || slope.item<float>() < kLeastSlope) {

@@ -7,8 +7,11 @@
 // where there is no way of their own (other devices, double precision).
 namespace recollect::cnn {
 
-// PReLU of one slope [1], in the place of x, which must be the result of a layer that does not need
-// it on the way back (a convolution).
+// A convolution in the precision of x, float or bfloat16; the weights are kept in float.
+torch::Tensor Convolve(const torch::Tensor& x, const torch::nn::Conv2dImpl& layer);
+
+// PReLU of one slope [1], in the place of x, float or bfloat16, which must be the result of a layer
+// that does not need it on the way back (a convolution).
 torch::Tensor RectifyInPlace(const torch::Tensor& x, const torch::Tensor& slope);
 
 // A convolution over few cells as one matrix product (ConvolutionTaps). x [B, I, H, W]; weights are

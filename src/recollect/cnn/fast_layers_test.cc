@@ -72,6 +72,29 @@ TEST(RectifyInPlaceTest, HasLibtorchsValuesAndGradients) {
   }
 }
 
+// What is rounded to eight bits is at most half of the last away from what is not.
+TEST(RectifyInPlaceTest, OfBfloat16IsTheSameRounded) {
+  torch::manual_seed(6);
+  const torch::Tensor exact = torch::randn({2, 3, 9, 11}).to(torch::kBFloat16);
+  const torch::Tensor pull = torch::randn({2, 3, 9, 11}).to(torch::kBFloat16);
+  std::vector<std::vector<torch::Tensor>> results;
+  for (const auto type : {torch::kFloat, torch::kBFloat16}) {
+    const torch::Tensor x = exact.detach().to(type).clone().requires_grad_(true);
+    const torch::Tensor slope = torch::full({1}, 0.25F).requires_grad_(true);
+    const torch::Tensor y = RectifyInPlace(x * 1, slope);
+    y.backward(pull.to(type));
+    EXPECT_EQ(y.scalar_type(), type);
+    results.push_back({y, x.grad(), slope.grad()});
+  }
+  for (std::size_t i = 0; i < results[0].size(); ++i) {
+    const torch::Tensor expected = results[0][i];
+    const torch::Tensor off = (results[1][i].to(torch::kFloat) - expected).abs();
+    EXPECT_TRUE((off <= expected.abs() / 256 + 1e-6).all().item<bool>()) << i;
+  }
+  torch::Tensor none = torch::full({1, 1, 4, 4}, std::nan("")).to(torch::kBFloat16);
+  EXPECT_TRUE(RectifyInPlace(none, torch::full({1}, 0.25F)).isnan().all().item<bool>());
+}
+
 // The whole network: every parameter's gradient is that of libtorch's own layers.
 TEST(PaperNetworkTraining, HasLibtorchsGradients) {
   torch::manual_seed(8);
@@ -99,6 +122,42 @@ TEST(PaperNetworkTraining, HasLibtorchsGradients) {
   for (std::size_t i = 0; i < gradients[0].size(); ++i) {
     EXPECT_LT(Difference(gradients[1][i], gradients[0][i]), 2e-3) << i;
   }
+}
+
+// In bfloat16 gradients point where they did, and nothing of it is left where one only asks.
+TEST(PaperNetworkTraining, InBfloat16HasNearlyTheSameGradients) {
+  torch::manual_seed(8);
+  PaperNetwork network(NetworkKind::kPaperB);
+  {
+    const torch::NoGradGuard no_gradients;
+    for (auto& parameter : network.parameters()) {
+      if (parameter.dim() == 4 && parameter.size(0) == 6) parameter.normal_(0, 0.002);
+    }
+  }
+  const torch::Tensor live = torch::rand({2, 3, 240, 320}), key = torch::rand({2, 3, 240, 320});
+  const torch::Tensor weights = torch::randn({2, 3, 4});
+  std::vector<std::vector<torch::Tensor>> gradients, motions;
+  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
+    network.TrainIn(precision);
+    network.train();
+    torch::manual_seed(9);  // of the dropout
+    const Prediction learning = network.forward(live, key);
+    (learning.motion * weights).sum().backward();
+    gradients.emplace_back();
+    for (auto& parameter : network.parameters()) {
+      EXPECT_EQ(parameter.grad().scalar_type(), torch::kFloat);
+      gradients.back().push_back(parameter.grad().flatten().clone());
+      parameter.mutable_grad().reset();
+    }
+    network.eval();
+    motions.push_back({learning.motion, network.forward(live, key).motion});
+  }
+  for (std::size_t i = 0; i < gradients[0].size(); ++i) {
+    EXPECT_GT(torch::cosine_similarity(gradients[0][i], gradients[1][i], 0).item<double>(), 0.98)
+        << i;
+  }
+  EXPECT_FALSE(torch::equal(motions[0][0], motions[1][0]));
+  EXPECT_TRUE(torch::equal(motions[0][1], motions[1][1]));
 }
 
 TEST(AdamTest, StepsInOnePassAsByTensors) {

@@ -8,6 +8,7 @@
 #include "recollect/cnn/network_kind.h"
 #include "recollect/cnn/pair_engine.h"
 #include "recollect/cnn/precision.h"
+#include "recollect/core/error.h"
 
 namespace recollect::cnn {
 
@@ -32,6 +33,12 @@ struct Prediction {
 class PairNetwork : public torch::nn::Module {
  public:
   virtual Prediction forward(const torch::Tensor& live, const torch::Tensor& key) = 0;
+
+  // How activations are kept while training, and multiplied in convolutions; weights, their
+  // gradients and the wide layers stay float. Throws Error where the network has one way only.
+  virtual void TrainIn(Precision precision) {
+    Require(precision == Precision::kFloat32, "bfloat16", "is for training the paper's networks");
+  }
 
   // A faster way to the same answers, from the weights as they are now, for images of that size;
   // null where the network has none.

@@ -39,7 +39,7 @@ torch::Tensor Run(torch::nn::SequentialImpl& layers, torch::Tensor x) {
     } else if (const auto* layer = module.ptr()->as<torch::nn::Conv2d>(); layer != nullptr) {
       convolved = x.size(2) * x.size(3) > kFewCells;
       const bool last = layer->weight.size(0) == 6;
-      x = convolved || last ? module.forward(x) : ConvolveAsProduct(x, *layer);
+      x = convolved || last ? Convolve(x, *layer) : ConvolveAsProduct(x.to(torch::kFloat), *layer);
     } else {
       x = module.forward(x);
     }
@@ -84,6 +84,7 @@ Prediction PaperNetwork::forward(const torch::Tensor& live, const torch::Tensor&
   if (!live.is_cpu()) return ForwardPlain(live, key);
   const std::int64_t batch = live.size(0);
   torch::Tensor x = torch::cat({live, key}).contiguous(torch::MemoryFormat::ChannelsLast);
+  if (half_ && is_training()) x = x.to(torch::kBFloat16);
   x = Run(*branch_, x);
   x = Run(*top_, torch::cat({x.narrow(0, 0, batch), x.narrow(0, batch, batch)}, 1));
   Prediction prediction;

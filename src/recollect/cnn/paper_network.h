@@ -13,6 +13,7 @@ class PaperNetwork : public PairNetwork {
   // kind: kPaperA (the authors' default) or kPaperB (larger strides in the branch).
   explicit PaperNetwork(NetworkKind kind);
   Prediction forward(const torch::Tensor& live, const torch::Tensor& key) override;
+  void TrainIn(Precision precision) override { half_ = precision == Precision::kBfloat16; }
   std::unique_ptr<PairEngine> MakeEngine(std::int64_t rows, std::int64_t columns,
                                          Precision precision) override;
 
@@ -25,6 +26,7 @@ class PaperNetwork : public PairNetwork {
   const torch::nn::Sequential& top() const { return top_; }
 
  private:
+  bool half_ = false;  // TrainIn
   torch::nn::Sequential branch_, top_;
 };
 

@@ -82,6 +82,7 @@ std::string ToJson(const TrainOptions& o) {
                       {"start", o.start.string()},
                       {"seed", o.seed}};
   if (o.average > 0) json["average"] = o.average;  // so that earlier checkpoints go on
+  if (o.precision == Precision::kBfloat16) json["precision"] = "bfloat16";
   return json.dump();
 }
 

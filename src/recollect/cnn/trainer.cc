@@ -114,6 +114,9 @@ class Trainer {
       const ModelInfo start = CopyWeights(options.start, options.network, *network_);
       fresh_covariance_ = PredictsCovariance() && !start.covariance;
     }
+    Require(options.precision == Precision::kFloat32 || device_.is_cpu(), "bfloat16",
+            "is trained in on the processor only");
+    network_->TrainIn(options.precision);
     Divisor divisor;
     if (ranks_.ranks() > 1) {
       divisor = [this](const torch::Tensor& weights) {
