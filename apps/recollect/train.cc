@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <memory>
+#include <numbers>
 #include <thread>
 
 #include "command.h"
@@ -36,6 +37,7 @@ struct TrainFlags {
   std::string schedule, loss;
   int ranks = 1;  // processes to start on this machine
   bool worlds_apart = false, half = false;
+  double turn_deg = 0;
   cnn::TrainOptions given;
 };
 
@@ -62,6 +64,8 @@ struct TrainCommand {
          flags.schedule == "cosine" ? cnn::Schedule::kCosine : cnn::Schedule::kHalving);
     take("--augment", options.augment, given.augment);
     options.precision = flags.half ? cnn::Precision::kBfloat16 : cnn::Precision::kFloat32;
+    take("--turn", options.view.turn_rad, flags.turn_deg * std::numbers::pi / 180);
+    take("--mirror", options.view.mirror, given.view.mirror);
     take("--average", options.average, given.average);
     take("--loss", options.loss.kind,
          flags.loss.empty() ? cnn::LossKind::kProjection : cnn::LossKindFromName(flags.loss));
@@ -161,6 +165,9 @@ void AddTrain(CLI::App& app) {
   command.add_flag("--augment,!--no-augment", given.augment, "vary light and colours");
   command.add_flag("--bf16", flags.half,
                    "convolve in bfloat16; networks a and b, on the processor");
+  command.add_option("--turn", flags.turn_deg,
+                     "turn both cameras at random, up to these degrees about each axis; 0: off");
+  command.add_flag("--mirror", given.view.mirror, "see half of the pairs in a mirror");
   command.add_option("--average", given.average,
                      "keep averages of the weights, of which a step leaves this share; 0: off");
   command.add_option("--loss", flags.loss,

@@ -41,10 +41,10 @@ Batch Batch::To(const torch::Device& device) const {
 
 namespace {
 
-// See MakeBatch; `light` is applied to each image, and told which of `chosen` it is of.
-template <typename Light>
+// See MakeBatch; `change` is applied to each pair, and told which of `chosen` it is.
+template <typename Change>
 Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen,
-               const Light& light) {
+               const Change& change) {
   const auto count = static_cast<std::int64_t>(chosen.size());
   const std::int64_t rows = data.crop.height, columns = data.crop.width;
   Batch batch;
@@ -55,14 +55,15 @@ Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size
   batch.depth = torch::zeros({count, grid.height, grid.width});
   const auto pixels = static_cast<std::size_t>(grid.height) * static_cast<std::size_t>(grid.width);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const Pair& pair = data.pairs[chosen[i]];
+    PairView pair = ViewOf(data, data.pairs[chosen[i]]);
+    change(i, pair);
     const std::size_t at = i * static_cast<std::size_t>(3 * rows * columns);
-    PrepareImage(kind, light(i, data.frames[pair.live].image), batch.live.data_ptr<float>() + at);
-    PrepareImage(kind, light(i, data.frames[pair.key].image), batch.key.data_ptr<float>() + at);
-    PutMotion(data.KeyframeFromLive(pair), batch.motion.data_ptr<float>() + i * 12);
-    const cv::Mat& depth = data.frames[pair.live].depth;
-    if (!depth.empty()) {
-      std::memcpy(batch.depth.data_ptr<float>() + i * pixels, depth.data, pixels * sizeof(float));
+    PrepareImage(kind, pair.live, batch.live.data_ptr<float>() + at);
+    PrepareImage(kind, pair.key, batch.key.data_ptr<float>() + at);
+    PutMotion(pair.keyframe_from_live, batch.motion.data_ptr<float>() + i * 12);
+    if (!pair.live_depth.empty()) {
+      std::memcpy(batch.depth.data_ptr<float>() + i * pixels, pair.live_depth.data,
+                  pixels * sizeof(float));
     }
   }
   return batch;
@@ -71,7 +72,7 @@ Batch Assemble(const PairData& data, NetworkKind kind, std::span<const std::size
 }  // namespace
 
 Batch MakeBatch(const PairData& data, NetworkKind kind, std::span<const std::size_t> chosen) {
-  return Assemble(data, kind, chosen, [](std::size_t, const cv::Mat& image) { return image; });
+  return Assemble(data, kind, chosen, [](std::size_t, const PairView&) {});
 }
 
 Loader::Loader(const PairData& data, const LoaderOptions& options, std::int64_t first)
@@ -145,13 +146,21 @@ Batch Loader::Make(std::int64_t number) {
   const auto ranks = static_cast<std::size_t>(options_.ranks);
   const std::size_t begin = whole.size() * rank / ranks;
   const auto chosen = whole.subspan(begin, whole.size() * (rank + 1) / ranks - begin);
-  if (!options_.augment) return MakeBatch(data_, options_.kind, chosen);
-  // A pair's light follows from its place in the whole batch, whoever makes it.
-  const auto seed = SubSeed(SubSeed(options_.seed, 2), static_cast<std::uint64_t>(number));
-  std::vector<Random> random;
-  for (std::size_t i = 0; i < chosen.size(); ++i) random.emplace_back(SubSeed(seed, begin + i));
-  return Assemble(data_, options_.kind, chosen, [&](std::size_t i, const cv::Mat& image) {
-    return AugmentLight(image, random[i]);
+  // What is drawn for a pair follows from its place in the whole batch, whoever makes it.
+  const auto stream = [&](std::uint64_t key, std::size_t i) {
+    const auto seed = SubSeed(SubSeed(options_.seed, key), static_cast<std::uint64_t>(number));
+    return Random(SubSeed(seed, begin + i));
+  };
+  return Assemble(data_, options_.kind, chosen, [&](std::size_t i, PairView& pair) {
+    if (options_.view.Any()) {
+      Random random = stream(5, i);
+      AugmentView(pair, data_.camera, options_.view, random);
+    }
+    if (options_.augment) {
+      Random random = stream(2, i);
+      pair.live = AugmentLight(pair.live, random);
+      pair.key = AugmentLight(pair.key, random);
+    }
   });
 }
 

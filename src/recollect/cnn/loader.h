@@ -12,6 +12,7 @@
 
 #include "recollect/cnn/network_kind.h"
 #include "recollect/cnn/pair_data.h"
+#include "recollect/cnn/pair_view.h"
 
 namespace recollect::cnn {
 
@@ -36,6 +37,7 @@ struct LoaderOptions {
   bool augment = false;  // AugmentLight on each image by itself
   std::uint64_t seed = 1;
   int rank = 0, ranks = 1;  // of several processes each gets its own share of every batch
+  ViewOptions view = {};    // AugmentView on each pair
 };
 
 // Batches of shuffled pairs, made ahead by a thread of its own. Batch number n is the same

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "recollect/cnn/checkpoint.h"
@@ -16,6 +17,9 @@ constexpr std::array<std::pair<LossKind, const char*>, 5> kLosses = {
      {LossKind::kL2, "l2"},
      {LossKind::kHomoscedastic, "homoscedastic"},
      {LossKind::kUncertainty, "uncertainty"}}};
+
+// About each axis; within it a wide image's corner stays in front of the camera.
+constexpr double kMostTurned = 20 * std::numbers::pi / 180 + 1e-9;
 
 }  // namespace
 
@@ -81,7 +85,10 @@ std::string ToJson(const TrainOptions& o) {
                       {"validation_share", o.validation_share},
                       {"start", o.start.string()},
                       {"seed", o.seed}};
-  if (o.average > 0) json["average"] = o.average;  // so that earlier checkpoints go on
+  // Named only where they are used, so that earlier checkpoints go on.
+  if (o.average > 0) json["average"] = o.average;
+  if (o.view.turn_rad > 0) json["turn_rad"] = o.view.turn_rad;
+  if (o.view.mirror) json["mirror"] = true;
   if (o.precision == Precision::kBfloat16) json["precision"] = "bfloat16";
   return json.dump();
 }
@@ -95,6 +102,7 @@ void RequireSensible(const TrainOptions& o) {
   require(o.minutes >= 0, "minutes", "zero or more");
   require(o.learning_rate > 0, "learning rate", "positive");
   require(o.average >= 0 && o.average < 1, "average", "within [0, 1)");
+  require(o.view.turn_rad >= 0 && o.view.turn_rad <= kMostTurned, "turn", "from 0 to 20 degrees");
   require(o.validation_pairs > 0, "validation pairs", "positive");
   require(o.validation_share > 0 && o.validation_share < 1, "validation share", "within (0, 1)");
   require(o.loss.far_metres >= 0 && o.loss.correspondence_weight >= 0 && o.loss.depth_weight >= 0,

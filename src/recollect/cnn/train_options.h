@@ -7,6 +7,7 @@
 
 #include "recollect/cnn/network_kind.h"
 #include "recollect/cnn/pair_data.h"
+#include "recollect/cnn/pair_view.h"
 #include "recollect/cnn/precision.h"
 #include "recollect/cnn/rank_options.h"
 
@@ -53,6 +54,7 @@ struct TrainOptions {
   double gradient_limit = 0;  // length of the gradient beyond which it is scaled down; 0: none
   bool augment = false;       // AugmentLight
   Precision precision = Precision::kFloat32;  // PairNetwork::TrainIn
+  ViewOptions view;                           // AugmentView; off
   // In (0, 1): what is validated and kept are the weights' moving averages, of which each step
   // leaves this share as it was (less over the first steps). 0: the weights themselves.
   double average = 0;

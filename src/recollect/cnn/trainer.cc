@@ -143,7 +143,7 @@ class Trainer {
     if (options_.resume) Resume();
     Loader loader(data_.train,
                   {options_.network, options_.batch, options_.augment, options_.seed, ranks_.rank(),
-                   ranks_.ranks()},
+                   ranks_.ranks(), options_.view},
                   state_.step);
     const std::int64_t every = options_.validate_steps > 0 ? options_.validate_steps : per_epoch_;
     if (!options_.start.empty() && state_.step == 0) Validate();  // it may be the best already

@@ -226,6 +226,26 @@ TEST_P(LossKinds, TrainAndResume) {
 INSTANTIATE_TEST_SUITE_P(All, LossKinds,
                          ::testing::Values("reprojection", "l2", "homoscedastic", "uncertainty"));
 
+TEST_F(TrainerTest, TurnsAndMirrorsWhatIsTrainedOnOnly) {
+  TrainOptions whole = Options("whole"), broken = Options("broken");
+  whole.view = broken.view = {.turn_rad = 0.05, .mirror = true};
+  const TrainResult expected = Run(whole), plain = Run(Options("plain"));
+  EXPECT_NE(expected.curve.front().loss, plain.curve.front().loss);
+  RunUntilPowerCut(broken);
+  ExpectResumesAs(expected, whole.out, broken);
+
+  const PoseNetwork network = PoseNetwork::Load(whole.out, 1);
+  EXPECT_NE(network.info().options.find("\"turn_rad\":0.05"), std::string::npos);
+  EXPECT_NE(network.info().options.find("\"mirror\":true"), std::string::npos);
+  ThreadPool pool(1);
+  const PairData data =
+      LoadPairs(std::span(street_.laps()).last(1), std::span(street_.laps()).first(1),
+                network.crop(), whole.pairs, pool);
+  const std::vector<std::size_t> validated = {0, data.pairs.size() / 2};
+  EXPECT_NEAR(EvaluatePairs(network, data, validated).Figures().position_mean_m,
+              network.info().validation.position_mean_m, 1e-4);
+}
+
 TEST_F(TrainerTest, KeepsAveragedWeightsAndResumesThem) {
   TrainOptions whole = Options("whole"), broken = Options("broken"), plain = Options("plain");
   whole.average = broken.average = 0.5;
@@ -309,6 +329,9 @@ TEST_F(TrainerTest, RefusesForeignCheckpoints) {
   options.resume = true;
   options.learning_rate *= 2;
   EXPECT_THROW(Run(options), Error);
+  options.learning_rate /= 2;
+  options.view.mirror = true;
+  EXPECT_THROW(Run(options), Error);
   AtomicWrite(CheckpointPath(options), "rubbish");
   EXPECT_THROW(Run(options), Error);
 }
@@ -328,6 +351,8 @@ TEST_F(TrainerTest, RefusesOptionsOutOfRange) {
     o.loss.kind = LossKind::kUncertainty;
   });
   refuses([](TrainOptions& o) { o.average = 1; });
+  refuses([](TrainOptions& o) { o.view.turn_rad = -0.1; });
+  refuses([](TrainOptions& o) { o.view.turn_rad = 0.5; });
   refuses([](TrainOptions& o) { o.learning_rate = 0; });
   refuses([](TrainOptions& o) { o.minutes = -1; });
   refuses([](TrainOptions& o) { o.validation_share = 1; });
