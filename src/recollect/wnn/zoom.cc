@@ -16,8 +16,8 @@ constexpr int kRounds = 3;        // of weighing parts anew by how they fit
 constexpr double kOutlier = 16;   // a part this far off counts half
 constexpr double kRounding = 4;   // variance of a displacement that fits all the others
 constexpr double kStanding = 6;   // growth that halves the belief where it is known exactly
-constexpr double kTogether = 32;  // times the variance: parts err together, by what they see
-constexpr int kNeighbours = 2;    // labels before and after that say the same of the camera
+constexpr double kTogether = 36;  // times the variance: parts err together, by what they see
+constexpr int kNeighbours = 1;    // labels before and after that say the same of the camera
 constexpr double kOnTheWay = 16;  // variance of what happens between these
 
 // One axis of the parts' displacements as a sum of kTerms, of which the last is growth.

@@ -88,7 +88,7 @@ TEST(Zoom, IsLeastWhereItChangesItsSign) {
   zooms.push_back({});
   const auto steady = Steadiness(labels, zooms);
   EXPECT_EQ(std::max_element(steady.begin(), steady.end() - 1) - steady.begin(), 4);
-  EXPECT_LT(steady[2], 0.7 * steady[4]);
+  EXPECT_LT(steady[2], 0.9 * steady[4]);
   EXPECT_EQ(steady.back(), 1);
 }
 
