@@ -34,8 +34,8 @@ Features FeaturesOf(const Route& route, std::span<const LabelVotes> histogram, i
   const double all = std::max(1, neurons);
   double own = 0, rival = 0;
   for (const LabelVotes& one : histogram) {
-    if (one.label == features.place) own = one.votes;
-    if (!route.WithinOne(features.place, one.label)) rival = std::max<double>(rival, one.votes);
+    double& most = route.WithinOne(features.place, one.label) ? own : rival;
+    most = std::max<double>(most, one.votes);
   }
   const std::vector<double> support = Support(route, histogram);
   const double most = *std::max_element(support.begin(), support.end());

@@ -20,8 +20,8 @@ struct Trial {
 
 // What the committee's votes are worth.
 struct Calibration {
-  // Log odds: weights times 1, the log of the answer's votes over the most of any place not within
-  // one of it, and the log of the share of neurons that supports it, per lap.
+  // Log odds: weights times 1, the log of the most votes of a place within one of the answer over
+  // the most of any other, and the log of the share of neurons that supports it, per lap.
   using Weights = std::array<double, 3>;
   // As trials among laps of other roads taught, before those of the map at hand have their say.
   Weights right{3, 12.5, 1.5};  // of being right, given that the image is of the route

@@ -145,7 +145,10 @@ std::vector<Look> LookCloser(const Memory& memory, const DisplacedImage& live,
   const Displacements& grid = live.grid();
   const auto size = kStride * static_cast<std::size_t>(grid.rows);  // votes of an entry
   std::vector<Look> looks(entries.size());
-  for (Look& look : looks) look.displacements.resize(parts.empty() ? 1 : 1 + neurons.size());
+  for (Look& look : looks) {
+    look.displacements.resize(parts.empty() ? 1 : 1 + neurons.size());
+    look.votes.resize(look.displacements.size());
+  }
   std::vector<std::int16_t> whole(entries.size() * size, 0);
   std::mutex adding;
   pool.For(static_cast<std::int64_t>(neurons.size()), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -172,14 +175,16 @@ std::vector<Look> LookCloser(const Memory& memory, const DisplacedImage& live,
       for (std::size_t e = 0; e < entries.size() && !parts.empty(); ++e) {
         const int best = MostVoted(&votes[e * size], grid);
         looks[e].displacements[1 + part] = best;
-        looks[e].halves += VotesUnder(&votes[e * size], grid, best);
+        looks[e].votes[1 + part] = VotesUnder(&votes[e * size], grid, best);
+        looks[e].halves += looks[e].votes[1 + part];
       }
     }
   });
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const int best = MostVoted(&whole[e * size], grid);
     looks[e].displacements[0] = best;
-    looks[e].halves += (parts.empty() ? 2 : 1) * VotesUnder(&whole[e * size], grid, best);
+    looks[e].votes[0] = VotesUnder(&whole[e * size], grid, best);
+    looks[e].halves += (parts.empty() ? 2 : 1) * looks[e].votes[0];
   }
   return looks;
 }

@@ -33,6 +33,7 @@ struct Look {
   int halves = 0;
   // Under which they were given: the whole image's, then each part's; of equals the first.
   std::vector<int> displacements;
+  std::vector<int> votes;  // under each of these
 };
 // By entry of `entries`, its votes under the displacements that give most. parts: as
 // Encoder::parts; empty: none. Throws Error where a row has more than 56 displacements.

@@ -11,6 +11,9 @@ namespace recollect::wnn {
 struct LabelVotes {
   int label = 0;
   int votes = 0;
+  // Of a closer look: how far the label's images show the scene no larger and no smaller, 1 where
+  // that is so or unknown (zoom.h). It tells which of neighbouring labels is the nearest one.
+  double steady = 1;
 };
 
 // How a label was looked at under displacements.

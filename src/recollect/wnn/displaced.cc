@@ -11,6 +11,7 @@
 #include "recollect/wnn/asking.h"
 #include "recollect/wnn/closer_look.h"
 #include "recollect/wnn/kernel.h"
+#include "recollect/wnn/zoom.h"
 
 namespace recollect::wnn {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr int kGrain = 16;          // neurons that a thread takes at a time
 constexpr std::size_t kLooks = 12;  // labels that are looked at again,
 constexpr int kAround = 2;          // and so many before and after each
+constexpr int kGap = 4;             // and those between two of these, at most so many
 constexpr int kUsual = 64;          // entries that tell how far entries usually lie
 
 // The best displacement by the votes there and half of those one step off, and these times two.
@@ -62,7 +64,8 @@ std::vector<int> Spread(const Memory& memory, const EntrySet* allowed, int count
   return spread;
 }
 
-// Entries of the labels with most votes and of those around them, by rising label.
+// Entries of the labels with most votes and of those around them, by rising label. A place that
+// was not looked at closer has hardly any votes: among places that were it would look refuted.
 std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
                            const std::vector<LabelVotes>& histogram) {
   std::set<int> labels;
@@ -70,6 +73,11 @@ std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
     const int first = std::max(0, histogram[i].label - kAround);
     const int last = std::min(memory.labels() - 1, histogram[i].label + kAround);
     for (int label = first; label <= last; ++label) labels.insert(label);
+  }
+  const std::vector<int> chosen(labels.begin(), labels.end());
+  for (std::size_t i = 1; i < chosen.size(); ++i) {
+    if (chosen[i] - chosen[i - 1] > kGap + 1) continue;
+    for (int label = chosen[i - 1] + 1; label < chosen[i]; ++label) labels.insert(label);
   }
   std::vector<int> entries;
   for (const int label : labels) {
@@ -82,24 +90,40 @@ std::vector<int> Promising(const Memory& memory, const EntrySet* allowed,
 
 // Adds the votes of a closer look.
 void LookAgain(const Memory& memory, const DisplacedImage& live, const DisplacedPatterns& first,
-               std::span<const int> parts, ThreadPool& pool, const SearchOptions& search,
+               const Encoder& encoder, ThreadPool& pool, const SearchOptions& search,
                Recollection& recollection) {
+  const std::vector<int>& parts = encoder.parts();
+  const std::vector<PartCentre> centres = PartCentres(encoder.synapses(), parts);
   const auto entries = Promising(memory, search.allowed, recollection.histogram);
   recollection.near = NearDistances(memory, first, Spread(memory, search.allowed, kUsual), pool);
   const std::vector<Look> looks = LookCloser(memory, live, recollection.near, entries, parts, pool);
   auto& views = recollection.second_look;
+  std::vector<int> labels;
+  std::vector<Zoom> zooms;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const int label = memory.label(entries[i]);
     const LabelView view{label, entries[i], looks[i].halves, looks[i].displacements};
-    if (views.empty() || views.back().label != label) views.push_back(view);
-    if (view.halves > views.back().halves) views.back() = view;
+    const bool another = views.empty() || views.back().label != label;
+    if (!another && view.halves <= views.back().halves) continue;
+    if (another) {
+      views.emplace_back();
+      labels.push_back(label);
+      zooms.emplace_back();
+    }
+    views.back() = view;
+    if (!parts.empty()) zooms.back() = ZoomOf(looks[i], centres, live.grid());
   }
+  const std::vector<double> steady = Steadiness(labels, zooms);
   std::map<int, int> halves;  // by label
+  std::map<int, double> steady_of;
+  for (std::size_t i = 0; i < labels.size(); ++i) steady_of[labels[i]] = steady[i];
   for (const LabelView& view : recollection.first_look) halves[view.label] += view.halves;
   for (const LabelView& view : views) halves[view.label] += view.halves;
   std::vector<LabelVotes> histogram;
   for (const auto& [label, count] : halves) {
-    if (count > 0) histogram.push_back({label, (count + 1) / 2});
+    if (count <= 0) continue;
+    const auto found = steady_of.find(label);
+    histogram.push_back({label, (count + 1) / 2, found == steady_of.end() ? 1 : found->second});
   }
   SetHistogram(std::move(histogram), recollection);
 }
@@ -185,7 +209,7 @@ Recollection RecollectImage(const Memory& memory, Encoder& encoder, const ImageV
   const int looked_at = search.allowed ? search.allowed->size() : memory.entries();
   merged.words_read = std::int64_t{looked_at} * memory.neurons() * kWords;
   if (grids.look_closer) {
-    LookAgain(memory, live, first, encoder.parts(), pool, search, merged);
+    LookAgain(memory, live, first, encoder, pool, search, merged);
   }
   return merged;
 }

@@ -56,13 +56,18 @@ std::vector<double> Support(const Route& route, std::span<const LabelVotes> hist
 
 int Supported(const Route& route, std::span<const LabelVotes> histogram) {
   if (histogram.empty()) return -1;
-  const std::vector<double> votes = VotesByPlace(route, histogram);
   const std::vector<double> support = Support(route, histogram);
-  auto best = static_cast<int>(std::max_element(support.begin(), support.end()) - support.begin());
-  const int place = best;
+  const auto place =
+      static_cast<int>(std::max_element(support.begin(), support.end()) - support.begin());
+  int best = place;
+  double most = 0;
   for (const LabelVotes& one : histogram) {
-    if (!route.WithinOne(place, one.label)) continue;
-    if (one.votes > votes[static_cast<std::size_t>(best)]) best = one.label;
+    if (one.label == place) most = Standing(one);
+  }
+  for (const LabelVotes& one : histogram) {
+    if (Standing(one) <= most || !route.WithinOne(place, one.label)) continue;
+    most = Standing(one);
+    best = one.label;
   }
   return best;
 }

@@ -26,8 +26,12 @@ Route ChainRoute(int places);
 // ahead and one behind. Laps that show one place share its votes; this joins them again.
 std::vector<double> Support(const Route& route, std::span<const LabelVotes> histogram);
 
-// The place with most votes among that with most support and those within one of it. -1 for an
-// empty histogram.
+// What a label stands out by among its neighbours: votes, but where the scene is larger or smaller
+// than it showed it (steady, squared, since one image has to tell alone) the camera was elsewhere.
+inline double Standing(const LabelVotes& one) { return one.votes * one.steady * one.steady; }
+
+// The place that stands out most (Standing) among that with most support and those within one of
+// it. -1 for an empty histogram.
 int Supported(const Route& route, std::span<const LabelVotes> histogram);
 
 }  // namespace recollect::wnn

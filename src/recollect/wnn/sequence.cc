@@ -42,7 +42,7 @@ std::vector<double> Likelihood(const VoteModel& model, const Route& route,
   for (double& s : support) s = std::pow(s / neurons + model.floor, model.trust) * unvoted;
   for (const LabelVotes& one : observation.histogram) {
     support[static_cast<std::size_t>(one.label)] *=
-        std::pow(one.votes / neurons + model.floor, model.sharpness) / unvoted;
+        one.steady * std::pow(one.votes / neurons + model.floor, model.sharpness) / unvoted;
   }
   return support;
 }
@@ -88,11 +88,11 @@ PlaceBelief MostLikely(const Route& route, std::span<const double> belief,
     for (const int other : route.beside[i]) add(other);
     if (sum > best.probability) best = {likeliest, std::min(1.0, sum)};
   }
-  int votes = 0;
+  double most = 0;
   const int likeliest = best.place;
   for (const LabelVotes& one : histogram) {
-    if (one.votes <= votes || !route.WithinOne(likeliest, one.label)) continue;
-    votes = one.votes;
+    if (Standing(one) <= most || !route.WithinOne(likeliest, one.label)) continue;
+    most = Standing(one);
     best.place = one.label;
   }
   return best;

@@ -1,0 +1,163 @@
+#include "recollect/wnn/zoom.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "recollect/core/error.h"
+#include "recollect/core/parallel.h"
+#include "recollect/wnn/displaced.h"
+#include "recollect/wnn/sequence.h"
+#include "recollect/wnn/test_scene.h"
+
+namespace recollect::wnn {
+namespace {
+
+const Displacements kGrid{33, 17, 4};
+
+std::vector<PartCentre> Centres() {
+  const NetworkOptions options = RecollectNetwork();
+  ThreadPool pool(1);
+  const Encoder encoder(options, 640, 480, pool);
+  return PartCentres(encoder.synapses(), encoder.parts());
+}
+
+// Parts of a scene that has grown by so many pixels at the window's edge, seen `aside` pixels
+// further to a side by walls left and right, the whole turned by 20 and 8 pixels.
+Look Seen(const std::vector<PartCentre>& centres, double growth, double aside) {
+  const auto steps = [](double pixels, int middle) {
+    return static_cast<int>(std::lround(pixels / kGrid.step)) + middle;
+  };
+  Look look{0, {0}, {100}};
+  for (const auto& [x, y] : centres) {
+    const int column = steps(20 + aside * std::abs(x) + growth * x, 16);
+    look.displacements.push_back(steps(8 + growth * y, 8) * kGrid.columns + column);
+    look.votes.push_back(12);
+  }
+  return look;
+}
+
+TEST(Zoom, CentresOfPartsAreSpreadOverTheWindow) {
+  const auto centres = Centres();
+  ASSERT_EQ(centres.size(), 24U);
+  EXPECT_NEAR(centres[0].x, -0.875, 1e-9);
+  EXPECT_NEAR(centres[23].x, 0.875, 1e-9);
+  EXPECT_NEAR(centres[0].y, -2.0 / 3 * 364 / 640, 1e-9);
+  EXPECT_NEAR(centres[12].y, 0, 1e-9);
+}
+
+TEST(Zoom, GrowthIsToldFromWalkingFurtherToASide) {
+  const auto centres = Centres();
+  for (const double growth : {-24.0, -8.0, 0.0, 8.0, 24.0}) {
+    for (const double aside : {-12.0, 0.0, 12.0}) {
+      Look look = Seen(centres, growth, aside);
+      EXPECT_NEAR(ZoomOf(look, centres, kGrid).growth, growth, 2) << growth << " " << aside;
+      // Two parts that saw something else.
+      look.displacements[3] = 0;
+      look.displacements[20] = kGrid.count() - 1;
+      const Zoom zoom = ZoomOf(look, centres, kGrid);
+      EXPECT_NEAR(zoom.growth, growth, 4) << growth << " " << aside;
+      EXPECT_GT(zoom.variance, ZoomOf(Seen(centres, growth, aside), centres, kGrid).variance);
+    }
+  }
+}
+
+TEST(Zoom, NothingIsKnownWithoutVotes) {
+  const auto centres = Centres();
+  Look look = Seen(centres, 8, 0);
+  std::fill(look.votes.begin(), look.votes.end(), 0);
+  const Zoom none = ZoomOf(look, centres, kGrid);
+  EXPECT_TRUE(std::isinf(none.variance));
+  const std::vector<int> labels = {3, 9};
+  const std::vector<Zoom> zooms = {none, {}};
+  EXPECT_EQ(Steadiness(labels, zooms), (std::vector<double>{1, 1}));
+  look.votes.pop_back();
+  EXPECT_THROW(ZoomOf(look, centres, kGrid), Error);
+}
+
+TEST(Zoom, IsLeastWhereItChangesItsSign) {
+  std::vector<int> labels;
+  std::vector<Zoom> zooms;
+  for (int label = 10; label < 19; ++label) {
+    labels.push_back(label);
+    // One of them, by chance, says it is at the place.
+    zooms.push_back({label == 12 ? 0.0 : 8.0 * (14 - label), 2});
+  }
+  labels.push_back(40);  // far from all others
+  zooms.push_back({});
+  const auto steady = Steadiness(labels, zooms);
+  EXPECT_EQ(std::max_element(steady.begin(), steady.end() - 1) - steady.begin(), 4);
+  EXPECT_LT(steady[2], 0.9 * steady[4]);
+  EXPECT_EQ(steady.back(), 1);
+}
+
+TEST(Zoom, TellsWhichViewAlongARoadIsTheNearest) {
+  // Views of two scenes, each five parts in a hundred nearer than the one before.
+  constexpr int kViews = 7;
+  ThreadPool pool(2);
+  Encoder encoder(RecollectNetwork(), 320, 240, pool);
+  Memory memory(RecollectNetwork().neurons());
+  const auto view = [](std::uint64_t scene, int i) {
+    const double zoom = 1 + 0.05 * i;
+    const cv::Mat motion =
+        (cv::Mat_<double>(2, 3) << zoom, 0, (1 - zoom) * 160, 0, zoom, (1 - zoom) * 91);
+    cv::Mat moved;
+    cv::warpAffine(Scene(scene), moved, motion, {320, 240}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    return moved;
+  };
+  for (const std::uint64_t scene : {1, 2}) {
+    for (int i = 0; i < kViews; ++i) memory.Append(encoder.Encode(View(view(scene, i))));
+  }
+  for (int i = 2; i < kViews - 2; ++i) {
+    const Recollection found = RecollectImage(memory, encoder, View(view(2, i)), pool);
+    std::vector<double> steady(2 * kViews, 0);
+    for (const LabelVotes& one : found.histogram) {
+      steady[static_cast<std::size_t>(one.label)] = one.steady;
+    }
+    const auto own = static_cast<std::size_t>(kViews + i);
+    EXPECT_GT(steady[own], 0.8) << i;
+    EXPECT_LT(steady[own - 2], steady[own]) << i;
+    EXPECT_LT(steady[own + 2], steady[own]) << i;
+  }
+}
+
+TEST(Zoom, DecidesBetweenNeighboursOnly) {
+  const Route route = ChainRoute(10);
+  // The place ahead looks bigger, and has a few more votes for that.
+  const std::vector<LabelVotes> histogram = {{5, 60, 0.7}, {4, 55, 1}, {3, 40, 0.9}, {9, 30, 1}};
+  EXPECT_EQ(Supported(route, histogram), 4);
+  const std::vector<double> belief = {0, 0, 0, 0.1, 0.4, 0.5, 0, 0, 0, 0};
+  EXPECT_EQ(MostLikely(route, belief, histogram).place, 4);
+  std::vector<LabelVotes> level = histogram;
+  for (LabelVotes& one : level) one.steady = 1;
+  EXPECT_EQ(Supported(route, level), 5);
+  EXPECT_EQ(MostLikely(route, belief, level).place, 5);
+  const auto with = Likelihood({}, route, {histogram, 100, {}, {}});
+  const auto without = Likelihood({}, route, {level, 100, {}, {}});
+  EXPECT_NEAR(with[5], 0.7 * without[5], 1e-12);
+  EXPECT_NEAR(with[4], without[4], 1e-12);
+  EXPECT_NEAR(with[0], without[0], 1e-12);
+}
+
+TEST(Zoom, NoPlaceAmongThoseLookedAtIsLeftOut) {
+  ThreadPool pool(2);
+  Encoder encoder(RecollectNetwork(), 320, 240, pool);
+  Memory memory(RecollectNetwork().neurons());
+  for (std::uint64_t place = 0; place < 120; ++place) {
+    memory.Append(encoder.Encode(View(Scene(place))));
+  }
+  int stretches = 1;
+  for (const std::uint64_t live : {200, 201, 202}) {
+    const auto looks = RecollectImage(memory, encoder, View(Scene(live)), pool).second_look;
+    for (std::size_t i = 1; i < looks.size(); ++i) {
+      const int apart = looks[i].label - looks[i - 1].label;
+      EXPECT_TRUE(apart == 1 || apart > 5) << looks[i].label;
+      stretches += apart > 1;
+    }
+  }
+  EXPECT_GT(stretches, 3);
+}
+
+}  // namespace
+}  // namespace recollect::wnn
