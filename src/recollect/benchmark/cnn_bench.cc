@@ -239,7 +239,7 @@ std::vector<double> Compare(const CnnBenchOptions& options) {
 
 nlohmann::json RunCnnBench(const CnnBenchOptions& options, const ProgressSink& progress) {
   std::int64_t done = 0;
-  constexpr std::int64_t kLegs = 11;
+  constexpr std::int64_t kLegs = 12;
   const auto leg = [&](const std::string& name, bool as_installed, const auto& body) {
     Report(progress, "bench cnn", done++, kLegs, name);
     return RunInChild(name, [&] {
@@ -261,6 +261,7 @@ nlohmann::json RunCnnBench(const CnnBenchOptions& options, const ProgressSink& p
   ask("ours_fp32", false, NetworkKind::kPaperA, Precision::kFloat32);
   ask("ours_bf16", false, NetworkKind::kPaperA, Precision::kBfloat16);
   ask("compact", false, NetworkKind::kCompact, Precision::kFloat32);
+  ask("compact_bf16", false, NetworkKind::kCompact, Precision::kBfloat16);
   const auto together = leg("infer together", false, [&] {
     return TimeQuestionsTogether(
         Asked(NetworkKind::kPaperA, NetworkA(options.seed), Precision::kFloat32), options);
@@ -320,7 +321,7 @@ std::string DescribeCnnBench(const nlohmann::json& f) {
       at("/train_step_s/ours_bf16"), at("/train_step_cpu_s/ours_bf16"),
       at("/train_step_s/libtorch"), at("/train_step_cpu_s/libtorch"), at("/train_ratio"),
       at("/train_cpu_ratio"));
-  for (const char* name : {"ours_fp32", "ours_bf16", "compact", "libtorch"}) {
+  for (const char* name : {"ours_fp32", "ours_bf16", "compact", "compact_bf16", "libtorch"}) {
     text += fmt::format("  {:<15}{:9.1f} ms {:9.1f} ms\n", name, f["infer_ms"][name].get<double>(),
                         f["infer_cpu_ms"][name].get<double>());
   }

@@ -19,9 +19,11 @@ struct CnnBenchOptions {
 
 // The networks on made-up images, ours beside libtorch as installed: its own layers and Adam, and
 // malloc as it comes. Each leg has a process of its own. Medians of the wall's clock, and of the
-// processor time of all threads in the fields named cpu; network A but for "compact":
+// processor time of all threads in the fields named cpu; network A but for those named
+// compact:
 //  train_step_s.{ours,ours_bf16,libtorch}      forward, backward and Adam
-//  infer_ms.{ours_fp32,ours_bf16,compact,libtorch}   one pair, from 8-bit crops to its SE3
+//  infer_ms.{ours_fp32,ours_bf16,compact,compact_bf16,libtorch}
+//                                              one pair, from 8-bit crops to its SE3
 //  infer_batch_ms                              ours_fp32, a pair where one live image meets eight
 //  train_ratio, infer_ratio                    ours / libtorch
 //  peak_gflops                                 of a plain large convolution
