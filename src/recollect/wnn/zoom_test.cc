@@ -63,6 +63,18 @@ TEST(Zoom, GrowthIsToldFromWalkingFurtherToASide) {
   }
 }
 
+// The wall that one walks nearer to is the larger and has more votes: alone it looks like growth.
+TEST(Zoom, IsNotThatOfTheNearerWall) {
+  const auto centres = Centres();
+  for (const double growth : {-8.0, 0.0, 8.0}) {
+    Look look = Seen(centres, growth, 12);
+    for (std::size_t part = 0; part < centres.size(); ++part) {
+      look.votes[part + 1] = centres[part].x < 0 ? 20 : 6;
+    }
+    EXPECT_NEAR(ZoomOf(look, centres, kGrid).growth, growth, 2) << growth;
+  }
+}
+
 TEST(Zoom, NothingIsKnownWithoutVotes) {
   const auto centres = Centres();
   Look look = Seen(centres, 8, 0);
