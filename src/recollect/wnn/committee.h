@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -8,12 +9,17 @@
 
 namespace recollect::wnn {
 
+// How much larger a live image shows the scene than an entry does (zoom.h): what lies at the
+// window's edge has moved outwards by so many pixels of a 640 pixels wide image.
+struct Zoom {
+  double growth = 0;
+  double variance = std::numeric_limits<double>::infinity();
+};
+
 struct LabelVotes {
   int label = 0;
   int votes = 0;
-  // Of a closer look: how far the label's images show the scene no larger and no smaller, 1 where
-  // that is so or unknown (zoom.h). It tells which of neighbouring labels is the nearest one.
-  double steady = 1;
+  Zoom zoom = {};  // of a closer look; unknown without one
 };
 
 // How a label was looked at under displacements.

@@ -98,8 +98,7 @@ void LookAgain(const Memory& memory, const DisplacedImage& live, const Displaced
   recollection.near = NearDistances(memory, first, Spread(memory, search.allowed, kUsual), pool);
   const std::vector<Look> looks = LookCloser(memory, live, recollection.near, entries, parts, pool);
   auto& views = recollection.second_look;
-  std::vector<int> labels;
-  std::vector<Zoom> zooms;
+  std::vector<Zoom> zooms;  // of these
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const int label = memory.label(entries[i]);
     const LabelView view{label, entries[i], looks[i].halves, looks[i].displacements};
@@ -107,23 +106,21 @@ void LookAgain(const Memory& memory, const DisplacedImage& live, const Displaced
     if (!another && view.halves <= views.back().halves) continue;
     if (another) {
       views.emplace_back();
-      labels.push_back(label);
       zooms.emplace_back();
     }
     views.back() = view;
     if (!parts.empty()) zooms.back() = ZoomOf(looks[i], centres, live.grid());
   }
-  const std::vector<double> steady = Steadiness(labels, zooms);
-  std::map<int, int> halves;  // by label
-  std::map<int, double> steady_of;
-  for (std::size_t i = 0; i < labels.size(); ++i) steady_of[labels[i]] = steady[i];
-  for (const LabelView& view : recollection.first_look) halves[view.label] += view.halves;
-  for (const LabelView& view : views) halves[view.label] += view.halves;
+  std::map<int, LabelVotes> halves;  // by label, in place of votes
+  for (const LabelView& view : recollection.first_look) halves[view.label].votes += view.halves;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    LabelVotes& one = halves[views[i].label];
+    one.votes += views[i].halves;
+    one.zoom = zooms[i];
+  }
   std::vector<LabelVotes> histogram;
-  for (const auto& [label, count] : halves) {
-    if (count <= 0) continue;
-    const auto found = steady_of.find(label);
-    histogram.push_back({label, (count + 1) / 2, found == steady_of.end() ? 1 : found->second});
+  for (const auto& [label, one] : halves) {
+    if (one.votes > 0) histogram.push_back({label, (one.votes + 1) / 2, one.zoom});
   }
   SetHistogram(std::move(histogram), recollection);
 }

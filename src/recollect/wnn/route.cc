@@ -1,11 +1,15 @@
 #include "recollect/wnn/route.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "recollect/core/error.h"
+#include "recollect/wnn/zoom.h"
 
 namespace recollect::wnn {
 namespace {
+
+constexpr double kBelieved = 0.05;  // power of a belief beside that of votes
 
 std::vector<double> VotesByPlace(const Route& route, std::span<const LabelVotes> histogram) {
   std::vector<double> votes(route.next.size(), 0);
@@ -54,20 +58,47 @@ std::vector<double> Support(const Route& route, std::span<const LabelVotes> hist
   return support;
 }
 
+std::vector<double> Steadiness(const Route& route, std::span<const LabelVotes> histogram) {
+  std::vector<Zoom> zooms(route.next.size());
+  for (const LabelVotes& one : histogram) zooms[static_cast<std::size_t>(one.label)] = one.zoom;
+  std::vector<double> steadiness;
+  for (const LabelVotes& one : histogram) {
+    Zoom along[2 * kBeside + 1];
+    along[kBeside] = one.zoom;
+    int before = one.label, next = one.label;
+    for (int i = 1; i <= kBeside; ++i) {
+      if (before >= 0) before = route.before[static_cast<std::size_t>(before)];
+      if (next >= 0) next = route.next[static_cast<std::size_t>(next)];
+      if (before >= 0) along[kBeside - i] = zooms[static_cast<std::size_t>(before)];
+      if (next >= 0) along[kBeside + i] = zooms[static_cast<std::size_t>(next)];
+    }
+    steadiness.push_back(Steady(along));
+  }
+  return steadiness;
+}
+
 int Supported(const Route& route, std::span<const LabelVotes> histogram) {
   if (histogram.empty()) return -1;
   const std::vector<double> support = Support(route, histogram);
   const auto place =
       static_cast<int>(std::max_element(support.begin(), support.end()) - support.begin());
+  return Outstanding(route, place, histogram);
+}
+
+int Outstanding(const Route& route, int place, std::span<const LabelVotes> histogram,
+                std::span<const double> belief) {
+  const std::vector<double> steadiness = Steadiness(route, histogram);
   int best = place;
   double most = 0;
-  for (const LabelVotes& one : histogram) {
-    if (one.label == place) most = Standing(one);
-  }
-  for (const LabelVotes& one : histogram) {
-    if (Standing(one) <= most || !route.WithinOne(place, one.label)) continue;
-    most = Standing(one);
-    best = one.label;
+  for (std::size_t i = 0; i < histogram.size(); ++i) {
+    const int label = histogram[i].label;
+    double standing = histogram[i].votes * steadiness[i] * steadiness[i];
+    if (!belief.empty()) standing *= std::pow(belief[static_cast<std::size_t>(label)], kBelieved);
+    // Of equals the place itself.
+    const bool more = standing > most || (standing == most && label == place);
+    if (!more || !route.WithinOne(place, label)) continue;
+    most = standing;
+    best = label;
   }
   return best;
 }

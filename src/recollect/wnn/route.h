@@ -26,12 +26,16 @@ Route ChainRoute(int places);
 // ahead and one behind. Laps that show one place share its votes; this joins them again.
 std::vector<double> Support(const Route& route, std::span<const LabelVotes> histogram);
 
-// What a label stands out by among its neighbours: votes, but where the scene is larger or smaller
-// than it showed it (steady, squared, since one image has to tell alone) the camera was elsewhere.
-inline double Standing(const LabelVotes& one) { return one.votes * one.steady * one.steady; }
+// By entry of the histogram, how steady its place is, given those before and after it (Steady).
+std::vector<double> Steadiness(const Route& route, std::span<const LabelVotes> histogram);
 
-// The place that stands out most (Standing) among that with most support and those within one of
-// it. -1 for an empty histogram.
+// Of a place and those within one of it, the one that stands out: that has most votes times
+// steadiness squared, since one image has to tell alone, times the twentieth root of what is
+// believed of it (by place; nothing is by default). The place itself where none has votes.
+int Outstanding(const Route& route, int place, std::span<const LabelVotes> histogram,
+                std::span<const double> belief = {});
+
+// Outstanding about the place with most support. -1 for an empty histogram.
 int Supported(const Route& route, std::span<const LabelVotes> histogram);
 
 }  // namespace recollect::wnn

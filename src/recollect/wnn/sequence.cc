@@ -40,9 +40,11 @@ std::vector<double> Likelihood(const VoteModel& model, const Route& route,
   const double neurons = std::max(1, observation.neurons);
   const double unvoted = std::pow(model.floor, model.sharpness);
   for (double& s : support) s = std::pow(s / neurons + model.floor, model.trust) * unvoted;
-  for (const LabelVotes& one : observation.histogram) {
+  const std::vector<double> steadiness = Steadiness(route, observation.histogram);
+  for (std::size_t i = 0; i < steadiness.size(); ++i) {
+    const LabelVotes& one = observation.histogram[i];
     support[static_cast<std::size_t>(one.label)] *=
-        one.steady * std::pow(one.votes / neurons + model.floor, model.sharpness) / unvoted;
+        steadiness[i] * std::pow(one.votes / neurons + model.floor, model.sharpness) / unvoted;
   }
   return support;
 }
@@ -88,13 +90,7 @@ PlaceBelief MostLikely(const Route& route, std::span<const double> belief,
     for (const int other : route.beside[i]) add(other);
     if (sum > best.probability) best = {likeliest, std::min(1.0, sum)};
   }
-  double most = 0;
-  const int likeliest = best.place;
-  for (const LabelVotes& one : histogram) {
-    if (Standing(one) <= most || !route.WithinOne(likeliest, one.label)) continue;
-    most = Standing(one);
-    best.place = one.label;
-  }
+  best.place = Outstanding(route, best.place, histogram, belief);
   return best;
 }
 

@@ -31,7 +31,7 @@ enum class Filter {
 };
 
 // Likelihood of a place: (its support / neurons + floor) ^ trust (its votes / neurons + floor) ^
-// sharpness, times how steady it is (LabelVotes). Fit on laps by Calibrate.
+// sharpness, times how steady it is (Steadiness). Fit on laps by Calibrate.
 struct VoteModel {
   double floor = 0.02, trust = 0.75, sharpness = 1;
 };
@@ -61,8 +61,8 @@ class Sequence {
 std::unique_ptr<Sequence> MakeSequence(const SequenceOptions& options, const Route& route);
 
 // The place that a belief stands for: of those within one of each other (see Route) that hold most
-// of it, the one that stands out most in the present image (Standing); the likeliest where none has
-// votes.
+// of it, the one that stands out most in the present image (Outstanding); the likeliest where none
+// has votes.
 struct PlaceBelief {
   int place = -1;
   double probability = 0;  // of these, says the belief

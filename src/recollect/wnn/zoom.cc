@@ -2,9 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "recollect/core/error.h"
 
@@ -12,13 +12,12 @@ namespace recollect::wnn {
 namespace {
 
 // Lengths are pixels of a 640 pixels wide image.
-constexpr int kRounds = 3;        // of weighing parts anew by how they fit
-constexpr double kOutlier = 16;   // a part this far off counts half
-constexpr double kRounding = 4;   // variance of a displacement that fits all the others
-constexpr double kStanding = 6;   // growth that halves the belief where it is known exactly
-constexpr double kTogether = 36;  // times the variance: parts err together, by what they see
-constexpr int kNeighbours = 1;    // labels before and after that say the same of the camera
-constexpr double kOnTheWay = 16;  // variance of what happens between these
+constexpr int kRounds = 3;       // of weighing parts anew by how they fit
+constexpr double kOutlier = 16;  // a part this far off counts half
+constexpr double kRounding = 4;  // variance of a displacement that fits all the others
+
+constexpr double kPlaces = 2;  // whose growth halves the belief
+constexpr double kDoubt = 4;   // standard deviations of growth that do
 
 // One axis of the parts' displacements as a sum of kTerms, of which the last is growth.
 template <int kTerms>
@@ -101,28 +100,25 @@ Zoom ZoomOf(const Look& look, std::span<const PartCentre> centres, const Displac
   return {(a.growth / a.variance + b.growth / b.variance) / known, 1 / known};
 }
 
-std::vector<double> Steadiness(std::span<const int> labels, std::span<const Zoom> zooms) {
-  Require(labels.size() == zooms.size(), "zoom", "one is needed for each label");
-  std::vector<double> steady;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    double known = 0, sum = 0;
-    for (std::size_t j = i - std::min<std::size_t>(i, kNeighbours);
-         j < std::min(labels.size(), i + kNeighbours + 1); ++j) {
-      const int apart = std::abs(labels[j] - labels[i]);
-      if (apart > kNeighbours) continue;
-      const double share = 1 - static_cast<double>(apart) / (kNeighbours + 1);
-      const double weight = share / (zooms[j].variance + kOnTheWay);
-      known += weight;
-      sum += weight * zooms[j].growth;
-    }
-    if (known <= 0) {
-      steady.push_back(1);
-      continue;
-    }
-    const double growth = sum / known;
-    steady.push_back(1 / (1 + growth * growth / (kStanding * kStanding + kTogether / known)));
+double Steady(const Zoom (&along)[2 * kBeside + 1]) {
+  const Zoom &before = along[kBeside - 1], &here = along[kBeside], &next = along[kBeside + 1];
+  if (std::isinf(before.variance + here.variance + next.variance)) return 1;
+  const double a_place = (before.growth - next.growth) / 2;
+  // A line through what is known, growth falling from place to place. The further from here, the
+  // less it is a line.
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (int i = -kBeside; i <= kBeside; ++i) {
+    const Zoom& one = along[kBeside + i];
+    const double weight = 1 / (one.variance + a_place * a_place * i * i);
+    const Eigen::Vector2d term(1, -i);
+    normal += weight * term * term.transpose();
+    right += weight * one.growth * term;
   }
-  return steady;
+  const Eigen::Matrix2d doubt = normal.inverse();
+  const Eigen::Vector2d found = doubt * right;  // growth here, and from a place to the next
+  const double half = kPlaces * kPlaces * found[1] * found[1] + kDoubt * kDoubt * doubt.trace();
+  return 1 / (1 + found[0] * found[0] / half);
 }
 
 }  // namespace recollect::wnn

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "recollect/wnn/closer_look.h"
+#include "recollect/wnn/committee.h"
 #include "recollect/wnn/network.h"
 
 namespace recollect::wnn {
@@ -20,17 +20,14 @@ struct PartCentre {
 // By part. parts: by neuron, as Encoder::parts.
 std::vector<PartCentre> PartCentres(const Synapses& synapses, std::span<const int> parts);
 
-// What an entry shows has grown so far at the window's edge in the live image, in pixels of a 640
-// pixels wide one; below zero: it has shrunk.
-struct Zoom {
-  double growth = 0;
-  double variance = std::numeric_limits<double>::infinity();  // as if parts erred each by itself
-};
 // From the parts' displacements and votes; `grid`: of these displacements.
 Zoom ZoomOf(const Look& look, std::span<const PartCentre> centres, const Displacements& grid);
 
-// By label, how far it is neither larger nor smaller there, given what its neighbours say, too: 1
-// for not at all, or nothing known of it. labels: rising; one zoom each.
-std::vector<double> Steadiness(std::span<const int> labels, std::span<const Zoom> zooms);
+// How far a place shows the scene neither larger nor smaller, 1 for not at all: by the line through
+// the growth that it and the places before and after it see, in the order of the route. Where all
+// is known well it is a half at as much growth as 2.8 places make; where little is, further off. 1
+// where the place, the one before or the one after is unknown.
+constexpr int kBeside = 2;
+double Steady(const Zoom (&along)[2 * kBeside + 1]);
 
 }  // namespace recollect::wnn

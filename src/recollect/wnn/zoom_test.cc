@@ -81,27 +81,36 @@ TEST(Zoom, NothingIsKnownWithoutVotes) {
   std::fill(look.votes.begin(), look.votes.end(), 0);
   const Zoom none = ZoomOf(look, centres, kGrid);
   EXPECT_TRUE(std::isinf(none.variance));
-  const std::vector<int> labels = {3, 9};
-  const std::vector<Zoom> zooms = {none, {}};
-  EXPECT_EQ(Steadiness(labels, zooms), (std::vector<double>{1, 1}));
+  EXPECT_EQ(Steady({none, {8, 1}, none, {-8, 1}, none}), 1);
+  EXPECT_EQ(Steady({none, none, {9, 1}, {-8, 1}, none}), 1);
+  EXPECT_LT(Steady({none, {17, 1}, {9, 1}, {1, 1}, none}), 1);
   look.votes.pop_back();
   EXPECT_THROW(ZoomOf(look, centres, kGrid), Error);
 }
 
-TEST(Zoom, IsLeastWhereItChangesItsSign) {
-  std::vector<int> labels;
-  std::vector<Zoom> zooms;
-  for (int label = 10; label < 19; ++label) {
-    labels.push_back(label);
-    // One of them, by chance, says it is at the place.
-    zooms.push_back({label == 12 ? 0.0 : 8.0 * (14 - label), 2});
-  }
-  labels.push_back(40);  // far from all others
-  zooms.push_back({});
-  const auto steady = Steadiness(labels, zooms);
-  EXPECT_EQ(std::max_element(steady.begin(), steady.end() - 1) - steady.begin(), 4);
-  EXPECT_LT(steady[2], 0.9 * steady[4]);
-  EXPECT_EQ(steady.back(), 1);
+TEST(Zoom, CountsByWhatPlacesGrow) {
+  const auto steady = [](double here, double a_place, double variance = 0.01) {
+    const auto at = [&](int place) { return Zoom{here - place * a_place, variance}; };
+    return Steady({at(-2), at(-1), at(0), at(1), at(2)});
+  };
+  EXPECT_EQ(steady(0, 20), 1);
+  EXPECT_NEAR(steady(56.6, 20), 0.5, 0.01);
+  EXPECT_NEAR(steady(-40, 20), steady(40, 20), 1e-9);
+  EXPECT_NEAR(steady(40, -20), steady(40, 20), 1e-9);  // of a camera that looks back
+  EXPECT_GT(steady(40, 60), 0.85);                     // these lie further apart
+  EXPECT_GT(steady(40, 20, 100), steady(40, 20));
+  // Of a camera that looks sideways: no place grows, and what is measured is chance.
+  EXPECT_GT(steady(8, 0.3, 60), 0.8);
+}
+
+// One label by itself may see growth that is not there, or miss it.
+TEST(Zoom, NeighboursHaveTheirSay) {
+  const Zoom clear[] = {{24, 4}, {12, 4}, {0, 4}, {-12, 4}, {-24, 4}};
+  const Zoom off[] = {{24, 4}, {12, 4}, {10, 20}, {-12, 4}, {-24, 4}};
+  EXPECT_NEAR(Steady(clear), 1, 1e-9);
+  EXPECT_GT(Steady(off), 0.95);
+  const Zoom on[] = {{34, 4}, {22, 4}, {0, 20}, {-2, 4}, {-14, 4}};
+  EXPECT_LT(Steady(on), 0.997);
 }
 
 TEST(Zoom, TellsWhichViewAlongARoadIsTheNearest) {
@@ -123,33 +132,48 @@ TEST(Zoom, TellsWhichViewAlongARoadIsTheNearest) {
   }
   for (int i = 2; i < kViews - 2; ++i) {
     const Recollection found = RecollectImage(memory, encoder, View(view(2, i)), pool);
+    const auto steadiness = Steadiness(ChainRoute(2 * kViews), found.histogram);
     std::vector<double> steady(2 * kViews, 0);
-    for (const LabelVotes& one : found.histogram) {
-      steady[static_cast<std::size_t>(one.label)] = one.steady;
+    for (std::size_t k = 0; k < steadiness.size(); ++k) {
+      steady[static_cast<std::size_t>(found.histogram[k].label)] = steadiness[k];
     }
     const auto own = static_cast<std::size_t>(kViews + i);
     EXPECT_GT(steady[own], 0.8) << i;
-    EXPECT_LT(steady[own - 2], steady[own]) << i;
-    EXPECT_LT(steady[own + 2], steady[own]) << i;
+    EXPECT_LT(steady[own - 1], steady[own]) << i;
+    EXPECT_LT(steady[own + 1], steady[own]) << i;
   }
 }
 
 TEST(Zoom, DecidesBetweenNeighboursOnly) {
   const Route route = ChainRoute(10);
   // The place ahead looks bigger, and has a few more votes for that.
-  const std::vector<LabelVotes> histogram = {{5, 60, 0.7}, {4, 55, 1}, {3, 40, 0.9}, {9, 30, 1}};
-  EXPECT_EQ(Supported(route, histogram), 4);
+  const std::vector<LabelVotes> histogram = {
+      {5, 60, {16, 1}}, {4, 55, {-2, 1}}, {6, 20, {30, 1}}, {3, 40, {-18, 1}}, {9, 30, {0, 1}}};
   const std::vector<double> belief = {0, 0, 0, 0.1, 0.4, 0.5, 0, 0, 0, 0};
+  EXPECT_EQ(Supported(route, histogram), 4);
   EXPECT_EQ(MostLikely(route, belief, histogram).place, 4);
-  std::vector<LabelVotes> level = histogram;
-  for (LabelVotes& one : level) one.steady = 1;
-  EXPECT_EQ(Supported(route, level), 5);
-  EXPECT_EQ(MostLikely(route, belief, level).place, 5);
+  std::vector<LabelVotes> unknown = histogram;
+  for (LabelVotes& one : unknown) one.zoom = {};
+  EXPECT_EQ(Supported(route, unknown), 5);
+  EXPECT_EQ(MostLikely(route, belief, unknown).place, 5);
   const auto with = Likelihood({}, route, {histogram, 100, {}, {}});
-  const auto without = Likelihood({}, route, {level, 100, {}, {}});
-  EXPECT_NEAR(with[5], 0.7 * without[5], 1e-12);
-  EXPECT_NEAR(with[4], without[4], 1e-12);
+  const auto without = Likelihood({}, route, {unknown, 100, {}, {}});
+  EXPECT_NEAR(with[5], Steady({{-18, 1}, {-2, 1}, {16, 1}, {30, 1}, {}}) * without[5], 1e-12);
+  EXPECT_LT(with[5], 0.98 * without[5]);
+  EXPECT_NEAR(with[9], without[9], 1e-12);
   EXPECT_NEAR(with[0], without[0], 1e-12);
+}
+
+TEST(Route, WhatIsBelievedDecidesBetweenPlacesThatStandOutAlike) {
+  const Route route = ChainRoute(10);
+  const std::vector<LabelVotes> histogram = {{5, 61}, {4, 60}, {3, 90}, {8, 99}};
+  EXPECT_EQ(Outstanding(route, 5, histogram), 5);
+  EXPECT_EQ(Outstanding(route, 6, histogram), 5);
+  EXPECT_EQ(Outstanding(route, 1, histogram), 1);
+  std::vector<double> belief(10, 0.01);
+  belief[4] = 0.5;
+  EXPECT_EQ(Outstanding(route, 5, histogram, belief), 4);
+  EXPECT_EQ(Outstanding(route, 4, histogram, belief), 3);  // many more votes weigh more
 }
 
 TEST(Zoom, NoPlaceAmongThoseLookedAtIsLeftOut) {
