@@ -337,6 +337,11 @@ TEST(RouteOf, PassesOfOneLapLieBesideEachOther) {
   EXPECT_EQ(route.beside[10], std::vector<int>{34});
   EXPECT_TRUE(route.WithinOne(3, 50));
   EXPECT_TRUE(route.beside[58].empty());
+  // Passes the other way see another scene.
+  ASSERT_EQ(route.along[10].size(), 10u);
+  for (const auto& [place, places] : route.along[10]) {
+    EXPECT_NEAR(places, (place > 20 ? place - 24 : place) - 10, 0.2) << place;
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kLapBreak = 3;   // spacings
 constexpr double kLoop = 2;       // spacings
+constexpr double kSight = 4;      // spacings from one another that key frames see one scene
 constexpr int kVisitLength = 10;  // entries within which another visit changes
 constexpr int kRun = 20;          // entries that calibration looks for one after the other
 constexpr double kAlike = 0.5;    // cosine of the angle between views of one place
@@ -55,6 +56,23 @@ std::vector<int> Beside(const std::vector<KeyFrame>& frames, int key, double wit
   return beside;
 }
 
+// Key frames that look the same way, at most so many spacings along the road.
+std::vector<wnn::Route::Along> Along(const std::vector<KeyFrame>& frames, int key, double spacing) {
+  const KeyFrame& frame = frames[static_cast<std::size_t>(key)];
+  const Eigen::Vector3d ahead = frame.world_from_camera.rotation().col(2);
+  std::vector<wnn::Route::Along> along;
+  for (int other = 0; other < static_cast<int>(frames.size()); ++other) {
+    const KeyFrame& candidate = frames[static_cast<std::size_t>(other)];
+    if (Apart(candidate, frame) > kSight * spacing || !LookAlike(candidate, frame)) continue;
+    const double places =
+        (candidate.world_from_camera.translation() - frame.world_from_camera.translation())
+            .dot(ahead) /
+        spacing;
+    if (std::abs(places) <= wnn::Route::kAlong) along.push_back({other, places});
+  }
+  return along;
+}
+
 // Takes a place, those beside it and `far` places either way of all of them out of `allowed`.
 void TakeAway(const wnn::Route& route, int place, int far, std::vector<bool>& allowed) {
   std::vector<int> centres = route.beside[static_cast<std::size_t>(place)];
@@ -85,6 +103,7 @@ wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m) {
   for (int key = 0; key < size; ++key) {
     const auto i = static_cast<std::size_t>(key);
     route.beside[i] = Beside(frames, key, spacing);
+    route.along[i] = Along(frames, key, spacing);
     const bool ends = key + 1 == size || frames[i + 1].lap != frames[i].lap;
     if (!ends && Apart(frames[i], frames[i + 1]) <= kLapBreak * spacing) continue;
     route.next[i] = -1;

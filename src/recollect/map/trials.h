@@ -17,9 +17,10 @@ class ThreadPool;
 
 // The places of a map: one a key frame, ahead of each other as their lap went, beside each other
 // where key frames of different laps, or passes of one lap more than ten key frames later, lie
-// closest, at most a spacing apart and looking less than 60 degrees away from one another. Laps end
-// where two key frames are more than 3 spacings apart; one whose end lies within 2 spacings of its
-// start goes on there.
+// closest, at most a spacing apart and looking less than 60 degrees away from one another. Along
+// the road lie those that look so and are at most 4 spacings apart, of any lap. Laps end where two
+// key frames are more than 3 spacings apart; one whose end lies within 2 spacings of its start goes
+// on there.
 wnn::Route RouteOf(const Map& map);
 // The same of key frames in the order they were learnt, those of a lap together.
 wnn::Route RouteOf(const std::vector<KeyFrame>& frames, double spacing_m);

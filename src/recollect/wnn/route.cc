@@ -39,6 +39,12 @@ Route ChainRoute(int places) {
     route.before.push_back(i - 1);
   }
   route.beside.resize(static_cast<std::size_t>(places));
+  for (int i = 0; i < places; ++i) {
+    auto& along = route.along.emplace_back();
+    for (int j = std::max(0, i - 2); j <= std::min(places - 1, i + 2); ++j) {
+      along.push_back({j, static_cast<double>(j - i)});
+    }
+  }
   return route;
 }
 
@@ -61,18 +67,16 @@ std::vector<double> Support(const Route& route, std::span<const LabelVotes> hist
 std::vector<double> Steadiness(const Route& route, std::span<const LabelVotes> histogram) {
   std::vector<Zoom> zooms(route.next.size());
   for (const LabelVotes& one : histogram) zooms[static_cast<std::size_t>(one.label)] = one.zoom;
+  const auto seen_by = [&](int place) {
+    return place < 0 ? Zoom{} : zooms[static_cast<std::size_t>(place)];
+  };
   std::vector<double> steadiness;
+  std::vector<ZoomAlong> along;
   for (const LabelVotes& one : histogram) {
-    Zoom along[2 * kBeside + 1];
-    along[kBeside] = one.zoom;
-    int before = one.label, next = one.label;
-    for (int i = 1; i <= kBeside; ++i) {
-      if (before >= 0) before = route.before[static_cast<std::size_t>(before)];
-      if (next >= 0) next = route.next[static_cast<std::size_t>(next)];
-      if (before >= 0) along[kBeside - i] = zooms[static_cast<std::size_t>(before)];
-      if (next >= 0) along[kBeside + i] = zooms[static_cast<std::size_t>(next)];
-    }
-    steadiness.push_back(Steady(along));
+    const auto i = static_cast<std::size_t>(one.label);
+    along.clear();
+    for (const auto& [place, places] : route.along[i]) along.push_back({places, seen_by(place)});
+    steadiness.push_back(Steady(along, seen_by(route.before[i]), one.zoom, seen_by(route.next[i])));
   }
   return steadiness;
 }

@@ -13,6 +13,14 @@ struct Route {
   std::vector<int> next;                 // by place: the one ahead on the same lap, -1: none
   std::vector<int> before;               // the one behind it, -1: none
   std::vector<std::vector<int>> beside;  // the same place as other laps or passes have it
+  // Those at most kAlong places further along the road or behind, of any lap, the place itself
+  // among them.
+  struct Along {
+    int place = 0;
+    double places = 0;  // further along
+  };
+  static constexpr double kAlong = 2.2;
+  std::vector<std::vector<Along>> along;
 
   int places() const { return static_cast<int>(next.size()); }
   // Whether b is a, lies beside it, or is one ahead of or behind either.
@@ -26,7 +34,7 @@ Route ChainRoute(int places);
 // ahead and one behind. Laps that show one place share its votes; this joins them again.
 std::vector<double> Support(const Route& route, std::span<const LabelVotes> histogram);
 
-// By entry of the histogram, how steady its place is, given those before and after it (Steady).
+// By entry of the histogram, how steady its place is, given those along the road (Steady).
 std::vector<double> Steadiness(const Route& route, std::span<const LabelVotes> histogram);
 
 // Of a place and those within one of it, the one that stands out: that has most votes times

@@ -100,20 +100,18 @@ Zoom ZoomOf(const Look& look, std::span<const PartCentre> centres, const Displac
   return {(a.growth / a.variance + b.growth / b.variance) / known, 1 / known};
 }
 
-double Steady(const Zoom (&along)[2 * kBeside + 1]) {
-  const Zoom &before = along[kBeside - 1], &here = along[kBeside], &next = along[kBeside + 1];
+double Steady(std::span<const ZoomAlong> along, const Zoom& before, const Zoom& here,
+              const Zoom& next) {
   if (std::isinf(before.variance + here.variance + next.variance)) return 1;
   const double a_place = (before.growth - next.growth) / 2;
-  // A line through what is known, growth falling from place to place. The further from here, the
-  // less it is a line.
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  for (int i = -kBeside; i <= kBeside; ++i) {
-    const Zoom& one = along[kBeside + i];
-    const double weight = 1 / (one.variance + a_place * a_place * i * i);
-    const Eigen::Vector2d term(1, -i);
+  for (const auto& [places, zoom] : along) {
+    const double bent = a_place * places;  // the further from here, the less it is a line
+    const double weight = 1 / (zoom.variance + bent * bent);
+    const Eigen::Vector2d term(1, -places);
     normal += weight * term * term.transpose();
-    right += weight * one.growth * term;
+    right += weight * zoom.growth * term;
   }
   const Eigen::Matrix2d doubt = normal.inverse();
   const Eigen::Vector2d found = doubt * right;  // growth here, and from a place to the next

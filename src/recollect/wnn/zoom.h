@@ -23,11 +23,17 @@ std::vector<PartCentre> PartCentres(const Synapses& synapses, std::span<const in
 // From the parts' displacements and votes; `grid`: of these displacements.
 Zoom ZoomOf(const Look& look, std::span<const PartCentre> centres, const Displacements& grid);
 
-// How far a place shows the scene neither larger nor smaller, 1 for not at all: by the line through
-// the growth that it and the places before and after it see, in the order of the route. Where all
-// is known well it is a half at as much growth as 2.8 places make; where little is, further off. 1
-// where the place, the one before or the one after is unknown.
-constexpr int kBeside = 2;
-double Steady(const Zoom (&along)[2 * kBeside + 1]);
+// What a place sees that lies so many places further along the road; below zero: behind.
+struct ZoomAlong {
+  double places = 0;
+  Zoom zoom;
+};
+// How far a scene is neither larger nor smaller at the place itself, 1 for not at all: by the line
+// through the growth that it and the places around it see, `along`. before, next: what those next
+// to it on its own lap see; half of what lies between tells how far from a line growth may be.
+// Where all is known well it is a half at as much growth as 2.8 places make; where little is,
+// further off. 1 where before, next or the place itself is unknown.
+double Steady(std::span<const ZoomAlong> along, const Zoom& before, const Zoom& here,
+              const Zoom& next);
 
 }  // namespace recollect::wnn

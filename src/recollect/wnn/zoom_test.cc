@@ -75,15 +75,22 @@ TEST(Zoom, IsNotThatOfTheNearerWall) {
   }
 }
 
+// Of the middle one of five places.
+double SteadyAmong(const std::vector<Zoom>& five) {
+  std::vector<ZoomAlong> along;
+  for (int i = -2; i <= 2; ++i) along.push_back({1.0 * i, five[static_cast<std::size_t>(2 + i)]});
+  return Steady(along, five[1], five[2], five[3]);
+}
+
 TEST(Zoom, NothingIsKnownWithoutVotes) {
   const auto centres = Centres();
   Look look = Seen(centres, 8, 0);
   std::fill(look.votes.begin(), look.votes.end(), 0);
   const Zoom none = ZoomOf(look, centres, kGrid);
   EXPECT_TRUE(std::isinf(none.variance));
-  EXPECT_EQ(Steady({none, {8, 1}, none, {-8, 1}, none}), 1);
-  EXPECT_EQ(Steady({none, none, {9, 1}, {-8, 1}, none}), 1);
-  EXPECT_LT(Steady({none, {17, 1}, {9, 1}, {1, 1}, none}), 1);
+  EXPECT_EQ(SteadyAmong({none, {8, 1}, none, {-8, 1}, none}), 1);
+  EXPECT_EQ(SteadyAmong({none, none, {9, 1}, {-8, 1}, none}), 1);
+  EXPECT_LT(SteadyAmong({none, {17, 1}, {9, 1}, {1, 1}, none}), 1);
   look.votes.pop_back();
   EXPECT_THROW(ZoomOf(look, centres, kGrid), Error);
 }
@@ -91,7 +98,7 @@ TEST(Zoom, NothingIsKnownWithoutVotes) {
 TEST(Zoom, CountsByWhatPlacesGrow) {
   const auto steady = [](double here, double a_place, double variance = 0.01) {
     const auto at = [&](int place) { return Zoom{here - place * a_place, variance}; };
-    return Steady({at(-2), at(-1), at(0), at(1), at(2)});
+    return SteadyAmong({at(-2), at(-1), at(0), at(1), at(2)});
   };
   EXPECT_EQ(steady(0, 20), 1);
   EXPECT_NEAR(steady(56.6, 20), 0.5, 0.01);
@@ -105,12 +112,18 @@ TEST(Zoom, CountsByWhatPlacesGrow) {
 
 // One label by itself may see growth that is not there, or miss it.
 TEST(Zoom, NeighboursHaveTheirSay) {
-  const Zoom clear[] = {{24, 4}, {12, 4}, {0, 4}, {-12, 4}, {-24, 4}};
-  const Zoom off[] = {{24, 4}, {12, 4}, {10, 20}, {-12, 4}, {-24, 4}};
-  EXPECT_NEAR(Steady(clear), 1, 1e-9);
-  EXPECT_GT(Steady(off), 0.95);
-  const Zoom on[] = {{34, 4}, {22, 4}, {0, 20}, {-2, 4}, {-14, 4}};
-  EXPECT_LT(Steady(on), 0.997);
+  const std::vector<Zoom> clear = {{24, 4}, {12, 4}, {0, 4}, {-12, 4}, {-24, 4}};
+  const std::vector<Zoom> off = {{24, 4}, {12, 4}, {10, 20}, {-12, 4}, {-24, 4}};
+  EXPECT_NEAR(SteadyAmong(clear), 1, 1e-9);
+  EXPECT_GT(SteadyAmong(off), 0.95);
+  const std::vector<Zoom> on = {{34, 4}, {22, 4}, {0, 20}, {-2, 4}, {-14, 4}};
+  EXPECT_LT(SteadyAmong(on), 0.997);
+  // So have those of another lap, wherever they lie.
+  std::vector<ZoomAlong> both = {{-1, {22, 4}}, {0, {0, 20}}, {1, {-2, 4}}};
+  const double alone = Steady(both, {22, 4}, {0, 20}, {-2, 4});
+  both.push_back({0.3, {-3.6, 1}});
+  both.push_back({-0.5, {6, 1}});
+  EXPECT_GT(Steady(both, {22, 4}, {0, 20}, {-2, 4}), alone);
 }
 
 TEST(Zoom, TellsWhichViewAlongARoadIsTheNearest) {
@@ -158,7 +171,7 @@ TEST(Zoom, DecidesBetweenNeighboursOnly) {
   EXPECT_EQ(MostLikely(route, belief, unknown).place, 5);
   const auto with = Likelihood({}, route, {histogram, 100, {}, {}});
   const auto without = Likelihood({}, route, {unknown, 100, {}, {}});
-  EXPECT_NEAR(with[5], Steady({{-18, 1}, {-2, 1}, {16, 1}, {30, 1}, {}}) * without[5], 1e-12);
+  EXPECT_NEAR(with[5], SteadyAmong({{-18, 1}, {-2, 1}, {16, 1}, {30, 1}, {}}) * without[5], 1e-12);
   EXPECT_LT(with[5], 0.98 * without[5]);
   EXPECT_NEAR(with[9], without[9], 1e-12);
   EXPECT_NEAR(with[0], without[0], 1e-12);
