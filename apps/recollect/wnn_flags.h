@@ -50,6 +50,8 @@ inline void AddWnnFlags(CLI::App& command, wnn::NetworkOptions& network) {
   command.add_option("--parts-x", network.parts_x,
                      "columns of parts that may be displaced each in its own way there; 0: none");
   command.add_option("--parts-y", network.parts_y, "and rows");
+  command.add_flag("--growth,!--no-growth", network.growth,
+                   "tell by them how much larger the scene looks, and so which place is nearest");
   command.add_flag("--blur,!--no-blur", network.blur, "Gaussian synapses read a blurred image");
   command.add_option("--neurons-x", network.neurons_x, "columns of neurons");
   command.add_option("--neurons-y", network.neurons_y, "rows of neurons");

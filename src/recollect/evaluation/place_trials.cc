@@ -178,6 +178,7 @@ std::vector<Variant> AblationVariants() {
   add("recollect", best, none);
   add("recollect, no closer look", best, [](Options& o) { o.closer_step = 0; });
   add("recollect, no parts", best, [](Options& o) { o.parts_x = o.parts_y = 0; });
+  add("recollect, growth not looked at", best, [](Options& o) { o.growth = false; });
   add("recollect, 4 x 3 parts", best, [](Options& o) {
     o.parts_x = 4;
     o.parts_y = 3;

@@ -37,6 +37,7 @@ std::vector<TuneQuestion> TuneQuestions() {
       {"parts",
        {Parts("--parts-x 0 --parts-y 0", 0, 0), Parts("--parts-x 4 --parts-y 3", 4, 3),
         Parts("--parts-x 8 --parts-y 6", 8, 6)}},
+      {"growth", {{"--no-growth", [](NetworkOptions& o) { o.growth = false; }}}},
       {"what synapses read",
        {{"--code gray", [](NetworkOptions& o) { o.code = wnn::Code::kGray; }}}},
       {"a bit",

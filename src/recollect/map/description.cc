@@ -54,6 +54,7 @@ json NetworkToJson(const wnn::NetworkOptions& network) {
           {"closer_step", network.closer_step},
           {"parts_x", network.parts_x},
           {"parts_y", network.parts_y},
+          {"growth", network.growth},
           {"window_aspect", network.window_aspect},
           {"gaussian_synapses", network.gaussian_synapses},
           {"gaussian_sigma", network.gaussian_sigma},
@@ -79,6 +80,7 @@ wnn::NetworkOptions NetworkFromJson(const json& j) {
   network.closer_step = j.value("closer_step", 0);
   network.parts_x = j.value("parts_x", 0);
   network.parts_y = j.value("parts_y", 0);
+  network.growth = j.value("growth", true);
   j.at("window_aspect").get_to(network.window_aspect);
   j.at("gaussian_synapses").get_to(network.gaussian_synapses);
   j.at("gaussian_sigma").get_to(network.gaussian_sigma);

@@ -109,7 +109,7 @@ void LookAgain(const Memory& memory, const DisplacedImage& live, const Displaced
       zooms.emplace_back();
     }
     views.back() = view;
-    if (!parts.empty()) zooms.back() = ZoomOf(looks[i], centres, live.grid());
+    if (encoder.tells_growth()) zooms.back() = ZoomOf(looks[i], centres, live.grid());
   }
   std::map<int, LabelVotes> halves;  // by label, in place of votes
   for (const LabelView& view : recollection.first_look) halves[view.label].votes += view.halves;

@@ -160,6 +160,7 @@ Displacements Encoder::closer_displacements() const {
 }
 
 const std::vector<int>& Encoder::parts() const { return state_->parts; }
+bool Encoder::tells_growth() const { return state_->options.growth && !state_->parts.empty(); }
 
 std::size_t Encoder::pattern_words() const {
   return static_cast<std::size_t>(state_->synapses.neurons()) * kWords;

@@ -39,6 +39,8 @@ class Encoder {
   Displacements closer_displacements() const;
   // By neuron, the part of the image that it lies in, row by row; empty: there are no parts.
   const std::vector<int>& parts() const;
+  // Whether the displacements of these tell how much larger the scene looks (zoom.h).
+  bool tells_growth() const;
   // 64-bit words of one image's pattern: neurons x 2, the bits of synapses 0..63 first.
   std::size_t pattern_words() const;
 

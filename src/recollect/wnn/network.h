@@ -51,6 +51,7 @@ struct NetworkOptions {
   // There the image is also cut into so many columns and rows of parts, each of which may be
   // displaced in its own way; 0: it is not.
   int parts_x = 0, parts_y = 0;
+  bool growth = true;  // and their displacements tell how much larger the scene looks (zoom.h)
 
   int neurons() const { return neurons_x * neurons_y; }
 };

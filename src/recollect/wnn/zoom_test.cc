@@ -157,6 +157,21 @@ TEST(Zoom, TellsWhichViewAlongARoadIsTheNearest) {
   }
 }
 
+TEST(Zoom, IsNotToldWhereItIsNotWanted) {
+  ThreadPool pool(2);
+  NetworkOptions options = RecollectNetwork();
+  for (const bool growth : {true, false}) {
+    options.growth = growth;
+    Encoder encoder(options, 320, 240, pool);
+    Memory memory(options.neurons());
+    for (std::uint64_t scene = 0; scene < 3; ++scene) {
+      memory.Append(encoder.Encode(View(Scene(scene))));
+    }
+    const auto found = RecollectImage(memory, encoder, View(Scene(1)), pool).histogram;
+    EXPECT_EQ(std::isinf(found.at(0).zoom.variance), !growth);
+  }
+}
+
 TEST(Zoom, DecidesBetweenNeighboursOnly) {
   const Route route = ChainRoute(10);
   // The place ahead looks bigger, and has a few more votes for that.
