@@ -113,6 +113,7 @@ double Steady(std::span<const ZoomAlong> along, const Zoom& before, const Zoom& 
     normal += weight * term * term.transpose();
     right += weight * zoom.growth * term;
   }
+  if (!(normal.determinant() > 0)) return 1;  // of places at one spot
   const Eigen::Matrix2d doubt = normal.inverse();
   const Eigen::Vector2d found = doubt * right;  // growth here, and from a place to the next
   const double half = kPlaces * kPlaces * found[1] * found[1] + kDoubt * kDoubt * doubt.trace();

@@ -32,7 +32,7 @@ struct ZoomAlong {
 // through the growth that it and the places around it see, `along`. before, next: what those next
 // to it on its own lap see; half of what lies between tells how far from a line growth may be.
 // Where all is known well it is a half at as much growth as 2.8 places make; where little is,
-// further off. 1 where before, next or the place itself is unknown.
+// further off. 1 where before, next or the place itself is unknown, or all lie at one spot.
 double Steady(std::span<const ZoomAlong> along, const Zoom& before, const Zoom& here,
               const Zoom& next);
 

@@ -110,6 +110,15 @@ TEST(Zoom, CountsByWhatPlacesGrow) {
   EXPECT_GT(steady(8, 0.3, 60), 0.8);
 }
 
+// A car that waited, or key frames too far apart for a line.
+TEST(Zoom, OneSpotTellsNothing) {
+  const Zoom grown = {20, 4};
+  const std::vector<ZoomAlong> here = {{0, grown}}, waited = {{0, grown}, {0, grown}, {0, grown}};
+  EXPECT_EQ(Steady(here, {30, 4}, grown, {10, 4}), 1);
+  EXPECT_EQ(Steady(waited, grown, grown, grown), 1);
+  EXPECT_EQ(Steady({}, grown, grown, grown), 1);
+}
+
 // One label by itself may see growth that is not there, or miss it.
 TEST(Zoom, NeighboursHaveTheirSay) {
   const std::vector<Zoom> clear = {{24, 4}, {12, 4}, {0, 4}, {-12, 4}, {-24, 4}};
