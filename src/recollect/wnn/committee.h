@@ -12,8 +12,8 @@ namespace recollect::wnn {
 // How much larger a live image shows the scene than an entry does (zoom.h): what lies at the
 // window's edge has moved outwards by so many pixels of a 640 pixels wide image.
 struct Zoom {
-  double growth = 0;
-  double variance = std::numeric_limits<double>::infinity();
+  double growth = 0;                                          // below zero: it has shrunk
+  double variance = std::numeric_limits<double>::infinity();  // as if parts erred each by itself
 };
 
 struct LabelVotes {

@@ -16,8 +16,10 @@ constexpr int kRounds = 3;       // of weighing parts anew by how they fit
 constexpr double kOutlier = 16;  // a part this far off counts half
 constexpr double kRounding = 4;  // variance of a displacement that fits all the others
 
-constexpr double kPlaces = 2;  // whose growth halves the belief
-constexpr double kDoubt = 4;   // standard deviations of growth that do
+// What halves the belief, the squares of both added: the growth of so many places, and so many
+// standard deviations of the line's.
+constexpr double kPlaces = 2;
+constexpr double kDoubt = 4;
 
 // One axis of the parts' displacements as a sum of kTerms, of which the last is growth.
 template <int kTerms>
